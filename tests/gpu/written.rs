@@ -3,7 +3,7 @@
 use libtest_mimic::{Failed, Trial};
 use pinhole::gpu::{Headless, Wait};
 use pinhole::image::encoding::Bits;
-use pinhole::verify::means::{Estimates, Means};
+use pinhole::verify::finished::{LEAST_EXACT, PixelVerdict};
 use pinhole::verify::written::{Samples, WrittenCertificate, WrittenPicture};
 use pinhole::verify::{Checker, Outcome};
 use pinhole::{Encoding, Image, LayerSet, cpu};
@@ -38,12 +38,9 @@ pub(crate) fn trials() -> Vec<Trial> {
         trials.push(Trial::test(format!("written::legal::{name}"), move || legal(&view)));
     }
     for (name, view) in share(lit_scenes::all()) {
-        trials.push(Trial::test(format!("written::means::{name}"), move || {
-            let means = means(headless()?, &view)?;
-            match means.count(Outcome::Violated) {
-                0 => Ok(()),
-                _ => Err(format!("{:?}", means.worst()).into()),
-            }
+        trials.push(Trial::test(format!("written::exact::{name}"), move || {
+            let share = exact_share(headless()?, &view)?;
+            if share >= LEAST_EXACT { Ok(()) } else { Err(format!("only {share} of the pixels are exact").into()) }
         }));
     }
     let is_seen = |fault: &Fault| is_visible(fault.name);
@@ -92,23 +89,14 @@ fn is_found(device: &Headless, view: &View) -> Result<(), Failed> {
     }
 }
 
-/// Compares a picture with the reference, which has another seed.
-fn means(device: &Headless, view: &View) -> Result<Means, Failed> {
+/// The share of pixels that are what the reference computes with the same random numbers.
+fn exact_share(device: &Headless, view: &View) -> Result<f64, Failed> {
     let View { scene, settings, .. } = view;
-    let mut settings = settings.clone();
-    settings.sampling.samples = settings.sampling.samples.min(64);
-    let found = device.render(scene, &view.seen(), &settings, LayerSet::COLOR).wait()?;
-    settings.sampling.seed += 1;
-    let expected = cpu::render(scene, &view.seen(), &settings, LayerSet::COLOR)?;
-    let wide = |image: &Image| -> Vec<[f64; 3]> { image.color().iter().map(|rgb| rgb.map(f64::from)).collect() };
-    let ties = Checker::new(scene)?.ties(&view.seen());
-    let estimates = Estimates {
-        size: [found.width(), found.height()],
-        samples: settings.sampling.samples,
-        reach: 0,
-        found: &wide(&found),
-        expected: &wide(&expected),
-        ties: &ties,
-    };
-    Ok(estimates.compare())
+    let found = device.render(scene, &view.seen(), settings, LayerSet::COLOR).wait()?;
+    let exact = cpu::render(scene, &view.seen(), settings, LayerSet::COLOR)?;
+    let (size, encoding) = ([found.width(), found.height()], &Encoding::default());
+    let bytes = [png::samples(&found, encoding)?, png::samples(&exact, encoding)?];
+    let pictures = bytes.each_ref().map(|bytes| WrittenPicture { size, samples: Samples::Encoded(bytes), encoding });
+    let judged = Checker::new(scene)?.certify_finished(&view.seen(), settings, pictures.each_ref(), false)?;
+    Ok(judged.count(PixelVerdict::Exact) as f64 / judged.verdicts.len() as f64)
 }
