@@ -11,13 +11,12 @@ use crate::gpu::headless::lit_flow::{Flow, LitWork};
 use crate::gpu::headless::lit_states::{Keeper, LONGEST_SIDE, Reader, States, longest_side};
 use crate::gpu::headless::progress::{Progress, Watch, unless_ended};
 use crate::gpu::headless::recording::requested_view;
-use crate::gpu::passes::lit::records::LightingParameters;
 use crate::gpu::passes::lit::{LightingData, LitPasses, LitScene, LitSizes, Moment, SampleStrategy};
 use crate::gpu::passes::tiles::Tile;
 use crate::gpu::scene::scene_buffers::SceneBuffers;
 use crate::gpu::shader::records::SceneSpace;
 use crate::light::SkyLight;
-use crate::recording::lit::{LitInputs, LitRecording, RecordedFilm, UploadedLighting, UploadedSky};
+use crate::recording::lit::{LitInputs, LitRecording, RecordedFilm, UploadedSky};
 use crate::render::RenderSettings;
 
 /// Callback with the recording of each sample.
@@ -207,44 +206,10 @@ fn inputs_in(
         size,
         settings: settings.clone(),
         max_surfaces: lighting.max_surfaces,
-        lighting: uploaded_lighting(&lighting.parameters),
+        lighting: lighting.lighting.clone(),
         tables: lighting.tables.iter().map(|four| four.map(f32::to_bits)).collect(),
         emitters: lighting.emitters.iter().map(|four| four.map(f32::to_bits)).collect(),
         sky: uploaded_sky(settings),
-    }
-}
-
-fn uploaded_lighting(lighting: &LightingParameters) -> UploadedLighting {
-    let mut filter_table: Vec<f32> = lighting.filter_table.iter().flatten().copied().collect();
-    // The table has rows of four numbers. The last row has a single number.
-    filter_table.truncate(257);
-    UploadedLighting {
-        background: lighting.background,
-        flags: lighting.flags,
-        light_count: lighting.light_count,
-        zenith: lighting.zenith,
-        horizon: lighting.horizon,
-        nadir: lighting.nadir,
-        roulette_from: lighting.roulette_from,
-        source_count: lighting.source_count,
-        light_sampling: lighting.light_sampling,
-        ground_normal: lighting.ground_normal,
-        ground_point: lighting.ground_point,
-        ground_color: lighting.ground_color,
-        seed: lighting.seed,
-        emitter_count: lighting.emitter_count,
-        material_first: lighting.material_first,
-        ambient: lighting.ambient,
-        cue_color: lighting.cue_color,
-        cue_near: lighting.cue_near,
-        cue_scale: lighting.cue_scale,
-        occlusion_radius: lighting.occlusion_radius,
-        occlusion_samples: lighting.occlusion_samples,
-        environment_size: lighting.environment_size,
-        environment_rotation: lighting.environment_rotation,
-        environment_strength: lighting.environment_strength,
-        lamp_sources: lighting.lamp_sources,
-        filter_table,
     }
 }
 

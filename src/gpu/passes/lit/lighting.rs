@@ -3,23 +3,17 @@
 
 use std::sync::Arc;
 
-use bytemuck::Zeroable;
-use glam::DVec3;
-
 use crate::camera::Camera;
-use crate::geometry::math::unit;
 use crate::gpu::passes::emitter_table;
 use crate::gpu::passes::lit::kernels::{Materials, Mode, OnePass, SkyKind, Sources};
 use crate::gpu::passes::lit::records::{BITS, LightingParameters};
 use crate::gpu::scene::scene_summary::SceneSummary;
-use crate::gpu::shader::records::NO_HIT;
-use crate::image::color::LinearRgb;
-use crate::light::codes::{self, lighting as flags};
-use crate::light::emitters::Emitters;
-use crate::light::energy::EnergyTables;
+use crate::light::codes::lighting as flags;
 use crate::light::environment::Environment;
-use crate::light::{LightKind, Sky, SkyLight};
-use crate::render::{Integrator, LightSampling, RenderSettings};
+use crate::light::{LightKind, SkyLight};
+use crate::recording::lighting::{HostLighting, SourceList, max_surfaces};
+use crate::recording::lit::UploadedLighting;
+use crate::render::{Integrator, RenderSettings};
 use crate::scene::material::{Material, SurfaceProperties};
 
 /// The data of a picture's lighting for its kernels.
@@ -27,6 +21,8 @@ use crate::scene::material::{Material, SurfaceProperties};
 pub(crate) struct LightingData {
     pub(crate) mode: Mode,
     pub(crate) parameters: LightingParameters,
+    /// The same parameters, as recordings have them.
+    pub(crate) lighting: UploadedLighting,
     /// The tables of lights, materials and energies, which are never empty.
     pub(crate) tables: Vec<[f32; 4]>,
     /// The table of emitters, which is empty unless light sampling chooses among them.
@@ -49,41 +45,15 @@ pub(crate) struct LightingData {
 impl LightingData {
     /// Computes the data for settings that have been checked. Positions are in the scene's frame.
     pub(crate) fn new(settings: &RenderSettings, scene: &SceneSummary, camera: &dyn Camera) -> Self {
-        let (mut tables, vectors) = (Vec::new(), camera.vectors());
-        let lights: Vec<LightKind> = settings.lights.iter().filter_map(|light| light.in_view(&vectors)).collect();
-        let emitters = &scene.emitters;
-        let sources = SourceList::of(settings, &lights, emitters);
-        for (index, light) in lights.iter().enumerate() {
-            let source = sources.lamps.get(index).copied().unwrap_or(0);
-            tables.extend(light_record(light, scene.origin, source));
-        }
-        let material_first = tables.len() as u32;
-        let rows = scene.appearance.material_rows();
-        let surfaces: Vec<SurfaceProperties> = rows.iter().map(|row| row.surface).collect();
-        let energies = EnergyTables::of(&surfaces);
-        let energy_first = material_first + 2 * (1 + rows.len()) as u32;
-        tables.extend(material_record(LinearRgb::WHITE, &SurfaceProperties::default(), 0));
-        for (row, start) in rows.iter().zip(&energies.starts) {
-            let energy = energy_first + start.unwrap_or(0) / 4;
-            tables.extend(material_record(row.color, &row.surface, energy));
-        }
-        tables.extend(energies.entries.chunks_exact(4).map(|e| [e[0], e[1], e[2], e[3]]));
-        let mut parameters = parameters_of(settings, scene);
-        parameters.light_count = lights.len() as u32;
-        parameters.source_count = sources.count();
-        parameters.lamp_sources = sources.lamps.len() as u32;
-        parameters.emitter_count = if sources.emitters { emitters.ids().len() as u32 } else { 0 };
-        parameters.material_first = material_first;
+        let inputs = HostLighting::new(settings, scene.origin, &scene.appearance, &scene.emitters, &camera.vectors());
+        let HostLighting { lighting, tables, lights, sources } = inputs;
         Self {
             mode: mode_of(settings, scene, &sources),
-            parameters,
+            parameters: LightingParameters::of(&lighting),
+            lighting,
             tables,
             emitters: if sources.emitters { emitter_table::records(scene).collect() } else { Vec::new() },
-            max_surfaces: match &settings.integrator {
-                Integrator::Studio(studio) if !scene.appearance.is_opaque() => studio.max_surfaces,
-                Integrator::Primary(_) | Integrator::Studio(_) => 1,
-                Integrator::Path(path) => path.max_depth,
-            },
+            max_surfaces: max_surfaces(settings, scene.appearance.is_opaque()),
             is_opaque: scene.appearance.is_opaque(),
             is_sharp: is_sharp(settings, scene, &lights),
             shadows: settings.studio_parameters().is_some_and(|studio| studio.shadows),
@@ -169,42 +139,6 @@ impl LightingData {
     }
 }
 
-/// The light sources among which light sampling chooses.
-#[derive(Debug)]
-struct SourceList {
-    /// Indices of the lights that can be sampled.
-    lamps: Vec<u32>,
-    emitters: bool,
-    image: bool,
-}
-
-impl SourceList {
-    fn of(settings: &RenderSettings, lights: &[LightKind], emitters: &Emitters) -> Self {
-        let Integrator::Path(path) = &settings.integrator else {
-            return Self { lamps: Vec::new(), emitters: false, image: false };
-        };
-        let is_sampled = path.light_sampling != LightSampling::Chance;
-        let lamps = lights.iter().zip(0..).filter(|(light, _)| match light {
-            LightKind::Head { .. } => false,
-            LightKind::Directional { angular_radius, .. } => *angular_radius == 0.0 || is_sampled,
-            LightKind::Point { .. } | LightKind::Sphere { .. } => true,
-        });
-        let image = match &settings.sky.light {
-            SkyLight::Image { environment, strength, .. } => environment.has_light() && *strength > 0.0,
-            _ => false,
-        };
-        Self {
-            lamps: lamps.map(|(_, index)| index).collect(),
-            emitters: is_sampled && !emitters.ids().is_empty(),
-            image: is_sampled && image,
-        }
-    }
-
-    fn count(&self) -> u32 {
-        self.lamps.len() as u32 + u32::from(self.emitters) + u32::from(self.image)
-    }
-}
-
 /// Whether lights have no size, no place and no shadows, and all surfaces are matt.
 fn is_sharp(settings: &RenderSettings, scene: &SceneSummary, lights: &[LightKind]) -> bool {
     let shadows = settings.studio_parameters().is_some_and(|studio| studio.shadows);
@@ -238,107 +172,40 @@ fn is_matt(surface: &SurfaceProperties) -> bool {
     }
 }
 
-fn parameters_of(settings: &RenderSettings, scene: &SceneSummary) -> LightingParameters {
-    let mut parameters = LightingParameters { seed: settings.sampling.seed, ..LightingParameters::zeroed() };
-    parameters.background = settings.background.to_array();
-    let flag = |is_set: bool, flag: u32| if is_set { flag } else { 0 };
-    parameters.flags =
-        flag(settings.is_transparent, flags::TRANSPARENT) | flag(settings.sky.is_visible, flags::SKY_SEEN);
-    if let Some(ground) = &settings.ground {
-        parameters.flags |= flags::GROUND | flag(ground.is_shadow_catcher, flags::CATCHER);
-        parameters.ground_point = (ground.point - scene.origin).as_vec3().to_array();
-        parameters.ground_normal = unit(ground.normal).unwrap_or(DVec3::Y).as_vec3().to_array();
-        parameters.ground_color = ground.color.to_array();
-    }
-    sky(&settings.sky, &mut parameters);
-    match &settings.integrator {
-        Integrator::Primary(_) => {}
-        Integrator::Path(path) => {
-            parameters.roulette_from = path.roulette_from;
-            parameters.light_sampling = path.light_sampling.code();
+impl LightingParameters {
+    fn of(lighting: &UploadedLighting) -> Self {
+        let mut filter_table = [[0.0; 4]; 65];
+        for (index, offset) in lighting.filter_table.iter().enumerate() {
+            filter_table[index / 4][index % 4] = *offset;
         }
-        Integrator::Studio(studio) => {
-            parameters.ambient = studio.ambient.to_array();
-            parameters.flags |= flag(studio.shadows, flags::SHADOWS);
-            if let Some(occlusion) = &studio.occlusion {
-                parameters.occlusion_samples = occlusion.samples;
-                parameters.occlusion_radius = occlusion.radius.map_or(NO_HIT, |radius| radius as f32);
-            }
-            if let Some(cue) = &studio.depth_cue {
-                parameters.cue_color = cue.color.to_array();
-                parameters.cue_near = cue.near as f32;
-                parameters.cue_scale = (1.0 / (cue.far - cue.near)) as f32;
-            }
+        Self {
+            background: lighting.background,
+            flags: lighting.flags,
+            ambient: lighting.ambient,
+            light_count: lighting.light_count,
+            zenith: lighting.zenith,
+            roulette_from: lighting.roulette_from,
+            horizon: lighting.horizon,
+            source_count: lighting.source_count,
+            nadir: lighting.nadir,
+            light_sampling: lighting.light_sampling,
+            cue_color: lighting.cue_color,
+            cue_near: lighting.cue_near,
+            ground_normal: lighting.ground_normal,
+            cue_scale: lighting.cue_scale,
+            ground_point: lighting.ground_point,
+            occlusion_radius: lighting.occlusion_radius,
+            ground_color: lighting.ground_color,
+            occlusion_samples: lighting.occlusion_samples,
+            seed: lighting.seed,
+            emitter_count: lighting.emitter_count,
+            material_first: lighting.material_first,
+            lamp_sources: lighting.lamp_sources,
+            environment_size: lighting.environment_size,
+            environment_rotation: lighting.environment_rotation,
+            environment_strength: lighting.environment_strength,
+            _pad: [0; 3],
+            filter_table,
         }
-    }
-    let table = settings.sampling.filter.offset_table();
-    for (index, offset) in table.iter().enumerate() {
-        parameters.filter_table[index / 4][index % 4] = *offset;
-    }
-    parameters
-}
-
-fn sky(sky: &Sky, parameters: &mut LightingParameters) {
-    match &sky.light {
-        SkyLight::Constant(radiance) => {
-            let radiance = radiance.to_array();
-            (parameters.zenith, parameters.horizon, parameters.nadir) = (radiance, radiance, radiance);
-        }
-        SkyLight::Gradient { zenith, horizon, nadir } => {
-            parameters.zenith = zenith.to_array();
-            parameters.horizon = horizon.to_array();
-            parameters.nadir = nadir.to_array();
-        }
-        SkyLight::Image { environment, strength, rotation } => {
-            parameters.environment_size = [environment.width(), environment.height()];
-            parameters.environment_rotation = crate::light::environment::Environment::rotation(*rotation);
-            parameters.environment_strength = *strength;
-        }
-    }
-}
-
-fn four([x, y, z]: [f32; 3], w: f32) -> [f32; 4] {
-    [x, y, z, w]
-}
-
-/// The record of a light in the layout of `shaders/scene/lamp.wgsl`.
-fn light_record(light: &LightKind, origin: DVec3, source: u32) -> [[f32; 4]; 3] {
-    let kind = f32::from_bits(codes::of_light(light));
-    let near = |position: DVec3| (position - origin).as_vec3().to_array();
-    let [position, power] = match *light {
-        LightKind::Head { strength } => [four([0.0; 3], kind), four(strength.to_array(), 0.0)],
-        LightKind::Directional { toward, strength, angular_radius } => {
-            // 1 minus the cosine of the angle, computed without cancellation.
-            let k = 2.0 * (0.5 * angular_radius).sin().powi(2);
-            [four(toward.as_vec3().to_array(), kind), four(strength.to_array(), k as f32)]
-        }
-        LightKind::Point { position, intensity } => [four(near(position), kind), four(intensity.to_array(), 0.0)],
-        LightKind::Sphere { center, radius, radiance } => {
-            [four(near(center), kind), four(radiance.to_array(), radius as f32)]
-        }
-    };
-    [position, power, [f32::from_bits(source), 0.0, 0.0, 0.0]]
-}
-
-/// The record of a material in the layout of `shaders/scene/material.wgsl`.
-fn material_record(color: LinearRgb, surface: &SurfaceProperties, energies: u32) -> [[f32; 4]; 2] {
-    let kind = codes::of_material(&surface.material);
-    let record = |parameter: f32, roughness: f32, absorption: [f32; 3]| {
-        let (kind, energies) = (f32::from_bits(kind), f32::from_bits(energies));
-        [[kind, parameter, roughness * roughness, energies], four(absorption, surface.opacity)]
-    };
-    match surface.material {
-        Material::Lambert { specular, roughness } => record(specular, roughness, [0.0; 3]),
-        Material::Conductor { roughness } => record(1.0, roughness, [0.0; 3]),
-        Material::Dielectric { ior, roughness, attenuation_distance } => {
-            let absorption = attenuation_distance.map_or([0.0; 3], |distance| {
-                color.to_array().map(|c| {
-                    let share = f64::from(c).max(1e-4);
-                    (-share.ln() / f64::from(distance)) as f32
-                })
-            });
-            record(ior, roughness, absorption)
-        }
-        Material::Emissive { strength } => record(strength, 0.0, [0.0; 3]),
     }
 }
