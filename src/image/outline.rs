@@ -87,15 +87,27 @@ const BAND: usize = 128;
 /// The fraction of each pixel that outlines cover. `None` if a layer is missing.
 fn coverage(image: &Image, outline: &Outline) -> Option<Vec<f32>> {
     let layers = Layers { ids: image.id()?, depths: image.depth()?, normals: image.normal()? };
-    let [width, height] = [image.width() as usize, image.height() as usize];
+    let size = [image.width() as usize, image.height() as usize];
+    Some(coverage_by(size, outline.width, |a, b| strength(layers.spot(a), layers.spot(b), outline)))
+}
+
+/// The distance along each axis, in pixels, beyond which an edge does not reach a pixel.
+pub(crate) fn halo(width: f32) -> usize {
+    PASSES + (0.5 * width).ceil() as usize + 2
+}
+
+/// The fraction of each pixel that lines of this width cover, given the strength of the line between two pixels.
+pub(crate) fn coverage_by(
+    [columns, height]: [usize; 2],
+    width: f32,
+    strength: impl Fn(usize, usize) -> f32 + Sync,
+) -> Vec<f32> {
     let bands = parallel::map_parts(parallel::ranges(height, BAND), |rows| {
-        // Edges farther away than this do not reach any row of the band.
-        let halo = PASSES + (0.5 * outline.width).ceil() as usize + 2;
+        let halo = halo(width);
         let around = rows.start.saturating_sub(halo)..(rows.end + halo).min(height);
-        let strength = |a: usize, b: usize| strength(layers.spot(a), layers.spot(b), outline);
-        Edges::find(width, around, strength).smoothed().covered(rows, outline.width)
+        Edges::find(columns, around, &strength).smoothed().covered(rows, width)
     });
-    Some(bands.concat())
+    bands.concat()
 }
 
 /// The layers that contain the edges.

@@ -175,6 +175,8 @@ impl PathState {
     /// its normal, its colour, and its specular lobe.
     pub const SLOTS: usize = 9;
 
+    pub(crate) const EMPTY: Self = Self { slots: [[0; 4]; Self::SLOTS] };
+
     /// The slot of the radiance so far, whose last number is the opacity.
     pub const RADIANCE: usize = 4;
 

@@ -383,7 +383,7 @@ impl PixelCheck<'_> {
 
 impl AnyRay {
     /// Distances from the camera, which the device computes with one sum.
-    fn depths(&self, Interval { low, high }: Interval) -> Interval {
+    pub(super) fn depths(&self, Interval { low, high }: Interval) -> Interval {
         let (near, far) = (low + self.distance.low, high + self.distance.high);
         Interval { low: near - PAD * U * near.abs(), high: far + PAD * U * far.abs() }
     }

@@ -46,7 +46,7 @@ const MOST_FLUSHED: f64 = 25.0 * FLUSH;
 const WIDEST: f64 = 0.05;
 
 /// Red, green and blue, and the variance of their luminance.
-type Light = [Interval; 4];
+pub(super) type Light = [Interval; 4];
 
 /// A pixel that no conforming device may compute.
 #[derive(Clone, Debug, PartialEq)]
@@ -105,20 +105,22 @@ impl std::fmt::Display for DenoiseViolation {
 /// # Errors
 /// Returns an error if the noisy picture lacks one of [the layers](crate::image::denoise::GUIDES) that denoising needs.
 pub fn certify(noisy: &Image, denoised: &Image) -> Result<DenoiseCertificate, MissingGuide> {
-    let filter = Filter { guides: Guides::of(noisy)?, size: [noisy.width(), noisy.height()].map(i64::from) };
+    let Guides { lights, shapes, albedos } = Guides::of(noisy)?;
     let exact = |x: &f32| Interval { low: f64::from(*x), high: f64::from(*x) };
-    let mut lights: Vec<Light> = filter.guides.lights.iter().map(|light| light.each_ref().map(exact)).collect();
-    for pass in 0..PASSES {
-        let parts = map_parts(ranges(lights.len(), CHUNK), |range| {
-            range.map(|index| filter.filtered(&lights, index, 1 << pass)).collect::<Vec<Light>>()
-        });
-        lights = parts.concat();
-    }
+    let lights: Vec<Light> = lights.iter().map(|light| light.each_ref().map(exact)).collect();
+    let guides = shapes.iter().zip(&albedos).map(|(shape, [r, g, b, _])| LegalGuide {
+        shape: shape.map(f64::from),
+        errors: [0.0; 2],
+        is_miss: Some(shape[..3].iter().all(|c| *c == 0.0)),
+        albedo: [r, g, b].map(exact),
+    });
+    let guides: Vec<LegalGuide> = guides.collect();
+    let lights = filtered(&guides, [noisy.width(), noisy.height()], lights);
     let mut certificate = DenoiseCertificate::default();
-    for (index, (light, albedo)) in lights.iter().zip(&filter.guides.albedos).enumerate() {
+    for (index, (light, guide)) in lights.iter().zip(&guides).enumerate() {
         // If the picture has another size, pixels that it lacks are not legal.
         let found = denoised.color().get(index).copied().unwrap_or([f32::NAN; 3]);
-        let legal: [Interval; 3] = std::array::from_fn(|i| product(light[i], albedo[i].into()));
+        let legal: [Interval; 3] = std::array::from_fn(|i| product(light[i], guide.albedo[i]));
         certificate.pixels += 1;
         // A bound that is NaN does not decide the pixel.
         let is_vague =
@@ -142,31 +144,54 @@ pub fn certify(noisy: &Image, denoised: &Image) -> Result<DenoiseCertificate, Mi
     Ok(certificate)
 }
 
-/// The product of light and albedo in f32; neither is negative.
-fn product(light: Interval, albedo: f64) -> Interval {
-    let Interval { low, high } = light;
-    Interval {
-        low: albedo * low - PAD * U * (albedo * low).abs() - FLUSH,
-        high: albedo * high + PAD * U * (albedo * high).abs() + FLUSH,
-    }
+/// The product of light and albedo in f32. Albedo is positive.
+pub(super) fn product(light: Interval, albedo: Interval) -> Interval {
+    let low = light.low * if light.low < 0.0 { albedo.high } else { albedo.low };
+    let high = light.high * if light.high < 0.0 { albedo.low } else { albedo.high };
+    Interval { low: low - PAD * U * low.abs() - FLUSH, high: high + PAD * U * high.abs() + FLUSH }
 }
 
-struct Filter {
-    guides: Guides,
+/// What guides the filter at a pixel.
+#[derive(Clone, Debug)]
+pub(super) struct LegalGuide {
+    /// Normal and depth, which are zero for a miss.
+    pub(super) shape: [f64; 4],
+    /// The bounds of the errors of the normal and of the depth.
+    pub(super) errors: [f64; 2],
+    /// Whether the pixel shows no surface; `None` if it may show several things.
+    pub(super) is_miss: Option<bool>,
+    /// The albedo by which light is divided.
+    pub(super) albedo: [Interval; 3],
+}
+
+/// The light that the passes may give to all pixels of a picture.
+pub(super) fn filtered(guides: &[LegalGuide], size: [u32; 2], mut lights: Vec<Light>) -> Vec<Light> {
+    let filter = Filter { guides, size: size.map(i64::from) };
+    for pass in 0..PASSES {
+        let parts = map_parts(ranges(lights.len(), CHUNK), |range| {
+            range.map(|index| filter.filtered(&lights, index, 1 << pass)).collect::<Vec<Light>>()
+        });
+        lights = parts.concat();
+    }
+    lights
+}
+
+struct Filter<'a> {
+    guides: &'a [LegalGuide],
     size: [i64; 2],
 }
 
-impl Filter {
+impl Filter<'_> {
     /// The light that a pass may give to a pixel.
     fn filtered(&self, lights: &[Light], middle: usize, step: i64) -> Light {
         let light = lights[middle];
-        let is_miss = self.guides.shapes[middle][..3].iter().all(|c| *c == 0.0);
+        let is_miss = self.guides[middle].is_miss;
         let variance = light[3];
-        if is_miss && variance.high <= NO_NOISE {
+        if is_miss == Some(true) && variance.high <= NO_NOISE {
             return light;
         }
         let mean = self.mean(lights, middle, step);
-        if is_miss && variance.low <= NO_NOISE {
+        if is_miss != Some(false) && variance.low <= NO_NOISE {
             return std::array::from_fn(|i| mean[i].union(light[i]));
         }
         mean
@@ -184,6 +209,8 @@ impl Filter {
         let mut weights = Interval { low: 0.0, high: 0.0 };
         // Sums of the magnitudes of all terms, of which rounding may change a part.
         let mut sizes = [0.0_f64; 3];
+        // The least and the greatest light of all pixels that may have a weight, between which each mean lies.
+        let mut hull = [Interval { low: f64::INFINITY, high: f64::NEG_INFINITY }; 3];
         for dy in -2..=2_i64 {
             for dx in -2..=2_i64 {
                 let (x, y) = (at[0] + dx * step, at[1] + dy * step);
@@ -214,6 +241,7 @@ impl Filter {
                     sums[channel].high += high * if high > 0.0 { weight.high } else { weight.low };
                     let size = other[channel].low.abs().max(other[channel].high.abs());
                     sizes[channel] += weight.high * size;
+                    hull[channel] = hull[channel].union(other[channel]);
                 }
                 sums[3].low += weight.low * weight.low * other[3].low;
                 sums[3].high += weight.high * weight.high * other[3].high;
@@ -227,7 +255,14 @@ impl Filter {
             let low = low / if low < 0.0 { weights.low } else { weights.high };
             let high = high / if high > 0.0 { weights.low } else { weights.high };
             let error = (rounding * sizes[i] + MOST_FLUSHED) / weights.low;
-            Interval { low: base[i] + low - error, high: base[i] + high + error }
+            let Interval { low: least, high: most } = hull[i];
+            let size = least.abs().max(most.abs());
+            let of_size = rounding * size + MOST_FLUSHED / weights.low;
+            // A bound that is NaN gives way to the other one.
+            Interval {
+                low: (base[i] + low - error).max(least - of_size),
+                high: (base[i] + high + error).min(most + of_size),
+            }
         });
         let rounding = PAD * gamma(OF_VARIANCES);
         let flushed = MOST_FLUSHED / (weights.low * weights.low);
@@ -238,44 +273,61 @@ impl Filter {
         [red, green, blue, Interval { low: variance.low.max(0.0), ..variance }]
     }
 
-    /// The similarity of two pixels in shape and albedo. Both are known exactly.
+    /// The similarity of two pixels in shape and albedo.
     fn likeness(&self, a: usize, b: usize, distance: f64) -> Interval {
-        let [shape, other] = [a, b].map(|index| self.guides.shapes[index].map(f64::from));
-        let products: [f64; 3] = std::array::from_fn(|i| shape[i] * other[i]);
-        let is_miss = |shape: [f64; 4]| shape[..3].iter().all(|c| *c == 0.0);
-        let error = PAD * gamma(3) * products.iter().map(|p| p.abs()).sum::<f64>() + 4.0 * FLUSH;
-        let cosine = products.iter().sum::<f64>();
-        // Squares are taken five times: 31 products. Below this, the power is flushed to zero.
-        let power = |cosine: f64, relative: f64| cosine.max(0.0).powi(32) * (1.0 + relative);
-        let relative = PAD * gamma(31);
-        let alike = match is_miss(shape) && is_miss(other) {
-            true => ONE,
-            false => {
+        let [one, other] = [a, b].map(|index| &self.guides[index]);
+        if a == b && (one.is_miss.is_none() || one.errors != [0.0; 2]) {
+            return ITSELF;
+        }
+        let alike = match (one.is_miss, other.is_miss) {
+            (None, _) | (_, None) => MOST_ALIKE,
+            (Some(true), Some(true)) => ONE,
+            _ => {
+                let products: [f64; 3] = std::array::from_fn(|i| one.shape[i] * other.shape[i]);
+                // Normals have about unit length.
+                let turned = 1.01 * (one.errors[0] + other.errors[0]);
+                let error = PAD * gamma(3) * products.iter().map(|p| p.abs()).sum::<f64>() + turned + 4.0 * FLUSH;
+                let cosine = products.iter().sum::<f64>();
+                // Squares are taken five times: 31 products. Below this, the power is flushed to zero.
+                let power = |cosine: f64, relative: f64| cosine.max(0.0).powi(32) * (1.0 + relative);
+                let relative = PAD * gamma(31);
+                let ([z, off_z], [w, off_w]) = ([one.shape[3], one.errors[1]], [other.shape[3], other.errors[1]]);
+                let (jump, moved) = ((z - w).abs(), off_z + off_w);
                 // One difference, a product of constants and of a root, and a quotient.
-                let depth = (shape[3] - other[3]).abs() / (0.005 * distance * shape[3].min(other[3]).max(1e-30));
+                let depth = |jump: f64, nearest: f64| jump / (0.005 * distance * nearest.max(1e-30));
+                let least = depth((jump - moved).max(0.0), (z + off_z).min(w + off_w));
+                let most = depth(jump + moved, (z - off_z).min(w - off_w));
                 let off = PAD * (gamma(6) + SQRT + DIVIDE);
                 let fall = |depth: f64| 1.0 / (1.0 + depth * depth);
                 let off_fall = PAD * (gamma(3) + DIVIDE);
                 Interval {
-                    low: power(cosine - error, -relative) * fall(depth * (1.0 + off) + FLUSH) * (1.0 - off_fall)
-                        - FLUSH,
+                    low: power(cosine - error, -relative) * fall(most * (1.0 + off) + FLUSH) * (1.0 - off_fall) - FLUSH,
                     high: power(cosine + error, relative)
-                        * fall((depth * (1.0 - off) - FLUSH).max(0.0))
+                        * fall((least * (1.0 - off) - FLUSH).max(0.0))
                         * (1.0 + off_fall)
                         + FLUSH,
                 }
             }
         };
-        let tints = [a, b].map(|index| self.guides.albedos[index].map(f64::from));
-        let tint: f64 = (0..3).map(|i| (tints[0][i] - tints[1][i]).powi(2)).sum();
-        let divisor = 1.0 + 400.0 * tint;
+        let mut tint = Interval { low: 0.0, high: 0.0 };
+        for (a, b) in one.albedo.iter().zip(&other.albedo) {
+            tint.low += (a.low - b.high).max(b.low - a.high).max(0.0).powi(2);
+            tint.high += (a.high - b.low).max(b.high - a.low).powi(2);
+        }
         let off = PAD * (gamma(8) + DIVIDE);
+        let divisor = |tint: f64| 1.0 + 400.0 * tint;
         Interval {
-            low: (alike.low / divisor * (1.0 - off) - FLUSH).max(0.0),
-            high: alike.high / divisor * (1.0 + off) + FLUSH,
+            low: (alike.low / divisor(tint.high) * (1.0 - off) - FLUSH).max(0.0),
+            high: alike.high / divisor(tint.low) * (1.0 + off) + FLUSH,
         }
     }
 }
+
+/// The similarity of a pixel and itself: the 32nd power of the square of a normal of about unit length.
+const ITSELF: Interval = Interval { low: 0.9999, high: 1.0001 };
+
+/// The similarity of shapes of which one is not known. Normals are slightly longer than 1 at most.
+const MOST_ALIKE: Interval = Interval { low: 0.0, high: 1.001 };
 
 const ONE: Interval = Interval { low: 1.0, high: 1.0 };
 

@@ -13,10 +13,15 @@ use crate::camera::View;
 use crate::parallel::{map_parts, ranges};
 use crate::recording::pixel_at;
 use crate::render::RenderSettings;
+use crate::verify::lit::check::LitCheck;
+use crate::verify::studio::forward;
 use crate::verify::{Checker, Verdict};
 
 /// The least share of exact pixels in a picture that is proved.
 pub const LEAST_EXACT: f64 = 0.99;
+
+/// The largest share of wide pixels in a picture that is proved.
+pub const MOST_WIDE: f64 = 0.001;
 
 /// The verdict about a pixel of a finished picture.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
@@ -25,6 +30,8 @@ pub enum PixelVerdict {
     Exact,
     /// It is another value to which rounding may lead.
     Legal,
+    /// Rounding may lead there, but also to many other values.
+    Wide,
     /// It differs, and nothing says whether rounding may lead there.
     Open,
     /// Rounding cannot lead there.
@@ -33,7 +40,7 @@ pub enum PixelVerdict {
 
 impl PixelVerdict {
     /// All verdicts, in the order of reports.
-    pub const ALL: &'static [Self] = &[Self::Exact, Self::Legal, Self::Open, Self::Violated];
+    pub const ALL: &'static [Self] = &[Self::Exact, Self::Legal, Self::Wide, Self::Open, Self::Violated];
 
     /// The name in reports.
     #[must_use]
@@ -41,13 +48,14 @@ impl PixelVerdict {
         match self {
             Self::Exact => "exact",
             Self::Legal => "legal",
+            Self::Wide => "wide",
             Self::Open => "open",
             Self::Violated => "violated",
         }
     }
 }
 
-/// A pixel that differs from the exact one.
+/// A pixel that differs from the exact one, and need not be legal.
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[non_exhaustive]
 pub struct PixelDifference {
@@ -76,7 +84,7 @@ pub struct FinishedCertificate {
     pub verdicts: Vec<PixelVerdict>,
     /// The first violations, in the order of pixels.
     pub violations: Vec<WrittenViolation>,
-    /// The first pixels that are open, in the order of pixels.
+    /// The first pixels that are wide or open, in the order of pixels.
     pub open: Vec<PixelDifference>,
 }
 
@@ -87,15 +95,19 @@ impl FinishedCertificate {
         self.verdicts.iter().filter(|other| **other == verdict).count()
     }
 
-    /// The outcome: proved if at least [`LEAST_EXACT`] of all pixels are exact and all others legal.
+    /// The outcome: proved if at least [`LEAST_EXACT`] of all pixels are exact, at most [`MOST_WIDE`] are wide, and all
+    /// others are legal.
     #[must_use]
     pub fn outcome(&self) -> Outcome {
-        let [exact, _, open, violated] = [0, 1, 2, 3].map(|index| self.count(PixelVerdict::ALL[index]));
-        match (violated, open) {
-            (0, 0) if exact > 0 && exact as f64 >= LEAST_EXACT * self.verdicts.len() as f64 => Outcome::Proved,
-            (0, _) => Outcome::Undecided,
-            _ => Outcome::Violated,
+        let all = self.verdicts.len() as f64;
+        let share = |verdict| self.count(verdict) as f64 / all;
+        if self.count(PixelVerdict::Violated) > 0 {
+            return Outcome::Violated;
         }
+        let is_known = self.count(PixelVerdict::Open) == 0 && share(PixelVerdict::Wide) <= MOST_WIDE;
+        // This is also false for a picture without pixels.
+        let is_exact = share(PixelVerdict::Exact) >= LEAST_EXACT;
+        if is_known && is_exact { Outcome::Proved } else { Outcome::Undecided }
     }
 }
 
@@ -118,32 +130,47 @@ impl Checker<'_> {
         let has_intervals = !is_annotated && size == [view.film.width(), view.film.height()];
         let by_intervals = settings.primary().filter(|_| has_intervals);
         let legal = by_intervals.map(|primary| self.certify_written(view, &primary, picture)).transpose()?;
+        let encoding = picture.encoding;
+        let is_plain = has_intervals && !encoding.transparent && encoding.kept_background().is_none();
         let count = size[0] as usize * size[1] as usize;
         let parts = map_parts(ranges(count, CHUNK), |range| {
-            let mut part = FinishedCertificate::default();
-            for index in range {
-                let difference = picture.difference(exact, index);
-                let legal = legal.as_ref().map(|legal| legal.verdicts[index]);
-                part.verdicts.push(match (legal, difference) {
-                    (Some(Verdict::Violation), _) => PixelVerdict::Violated,
-                    (_, None) => PixelVerdict::Exact,
-                    (Some(_), _) => PixelVerdict::Legal,
-                    (None, Some((channel, [found, exact]))) => {
-                        part.open.push(PixelDifference { pixel: pixel_at(index, size[0]), channel, found, exact });
-                        PixelVerdict::Open
-                    }
-                });
-            }
-            part.open.truncate(KEPT);
-            part
+            range.filter(|index| picture.difference(exact, *index).is_some()).collect::<Vec<usize>>()
         });
-        let mut all = FinishedCertificate::default();
-        for part in parts {
-            all.verdicts.extend(part.verdicts);
-            all.open.extend(part.open);
+        let differ = parts.concat();
+        let studio = (is_plain && !differ.is_empty()).then(|| forward::inputs(self, view, settings)).flatten();
+        let lights = match &studio {
+            Some(inputs) => LitCheck::new(self, inputs).finished_light(&differ),
+            None => vec![None; differ.len()],
+        };
+        let mut all =
+            FinishedCertificate { verdicts: vec![PixelVerdict::Exact; count], ..FinishedCertificate::default() };
+        for (index, light) in differ.into_iter().zip(lights) {
+            let pixel = pixel_at(index, size[0]);
+            let judged = light.map(|light| picture.judge_light(index, light));
+            all.verdicts[index] = match (&legal, judged) {
+                (Some(_), _) | (None, Some(Ok(true))) => PixelVerdict::Legal,
+                (None, Some(Ok(false))) => PixelVerdict::Wide,
+                (None, None) => PixelVerdict::Open,
+                (None, Some(Err((channel, legal)))) => {
+                    let found = picture.at(index)[channel];
+                    all.violations.push(WrittenViolation { pixel, channel, found, legal });
+                    PixelVerdict::Violated
+                }
+            };
+            if let (PixelVerdict::Open | PixelVerdict::Wide, Some((channel, [found, exact]))) =
+                (all.verdicts[index], picture.difference(exact, index))
+            {
+                all.open.push(PixelDifference { pixel, channel, found, exact });
+            }
+        }
+        if let Some(legal) = legal {
+            let illegal =
+                legal.verdicts.iter().zip(&mut all.verdicts).filter(|(found, _)| **found == Verdict::Violation);
+            illegal.for_each(|(_, verdict)| *verdict = PixelVerdict::Violated);
+            all.violations = legal.violations;
         }
         all.open.truncate(KEPT);
-        all.violations = legal.map(|legal| legal.violations).unwrap_or_default();
+        all.violations.truncate(KEPT);
         Ok(all)
     }
 }

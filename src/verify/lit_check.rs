@@ -3,8 +3,6 @@
 use crate::recording::lit::{
     BITS, LitRecording, PathState, RecordedSample, RecordedSurface, StudioLight, UploadedLighting, flag, slot,
 };
-use crate::scene::material::{Material, SurfaceProperties};
-use crate::verify::camera::CameraModel;
 use crate::verify::checker::Checker;
 use crate::verify::choices::Choices;
 use crate::verify::hit::LegalHits;
@@ -14,7 +12,7 @@ use crate::verify::lit::film::{check_sums, judge_start};
 use crate::verify::lit::judge::{
     Judge, Mismatch, Name, StageOutcome, StageResult, along_choices, judge_pixels, searched,
 };
-use crate::verify::lit::kernel::{Hit, Kernel};
+use crate::verify::lit::kernel::{Hit, Kernel, Output, RayState};
 use crate::verify::lit::search::{OPEN, Obstacle, check_hit, check_open};
 use crate::verify::lit::upload;
 use crate::verify::number::{Number, Vector};
@@ -39,18 +37,7 @@ impl Checker<'_> {
         if certificate.upload.is_some() {
             return certificate;
         }
-        let is_matt = |surface: &SurfaceProperties| match surface.material {
-            Material::Lambert { specular, .. } => specular == 0.0,
-            Material::Emissive { .. } => true,
-            Material::Conductor { .. } | Material::Dielectric { .. } => false,
-        };
-        let check = LitCheck {
-            checker: self,
-            inputs: given,
-            model: CameraModel::new(given.camera.kind, &given.uploaded, &given.film),
-            is_studio: given.is_studio(),
-            is_matt: self.scene.appearance().surfaces().iter().all(is_matt),
-        };
+        let check = LitCheck::new(self, given);
         for sample in &recording.samples {
             certificate.join(judge_pixels(sample.start.len(), |index, part, legal| {
                 check.judge_sample(sample, index, part, legal);
@@ -115,9 +102,10 @@ impl LitCheck<'_> {
     ) -> (Result<StageResult, Mismatch>, Option<HitKind>) {
         let mut met = None;
         let is_last = address.surface + 1 >= self.inputs.max_surfaces;
+        let known = RayState::recorded(*before);
         let result = along_choices(|choices| {
-            let mut kernel = self.kernel(address, before, choices);
-            (kernel.hit, kernel.after) = (hit, after);
+            let mut kernel = self.kernel(address, &known, choices);
+            (kernel.hit, kernel.after) = (hit.into(), Output::Recorded(after));
             match self.is_studio {
                 true => met = Some(kernel.follow_surface(is_last)?),
                 false => kernel.follow()?,
@@ -184,6 +172,7 @@ impl LitCheck<'_> {
                 }
             }
             Some(HitKind::Surface) => {
+                let state = &RayState::recorded(*state);
                 for offset in 0..BITS {
                     let result = self.hidden(address, state, found, offset);
                     if let Some(result) = result.transpose() {
@@ -199,7 +188,7 @@ impl LitCheck<'_> {
     fn hidden(
         &self,
         address: Address,
-        state: &PathState,
+        state: &RayState,
         found: Light<'_>,
         offset: u32,
     ) -> Result<Option<StageResult>, Mismatch> {
@@ -231,10 +220,10 @@ impl LitCheck<'_> {
     }
 
     /// The union of a kernel's outcomes for all combinations of its open decisions; `None` if there are too many.
-    fn outcomes<T>(
+    pub(crate) fn outcomes<T>(
         &self,
         address: Address,
-        state: &PathState,
+        state: &RayState,
         join: impl Fn(T, T) -> T,
         mut follow: impl FnMut(&mut Kernel<'_>) -> T,
     ) -> Option<T> {
@@ -247,18 +236,18 @@ impl LitCheck<'_> {
     }
 
     /// Judges the light that is added to a surface.
-    fn added(&self, address: Address, state: &PathState, found: Light<'_>) -> Result<StageResult, Mismatch> {
+    fn added(&self, address: Address, state: &RayState, found: Light<'_>) -> Result<StageResult, Mismatch> {
         let total = self.outcomes(address, state, Number::union, |kernel| kernel.light_to_catch());
         let sum = total.and_then(|total| self.sum(address, state, found, total));
         let Some(sum) = sum else { return Ok(StageOutcome::Undecided.into()) };
         let Kind { sums: stage, radiance, opacity, .. } = *found.kind;
         let mut judge = Judge::default();
-        let before = state.vector(slot::RADIANCE);
+        let before = state.raw.vector(slot::RADIANCE);
         let [r, g, b, found_opacity] = found.light.radiance[found.index].map(f32::from_bits);
         let size = before.into_iter().fold(0.0, |size: f64, c| size.max(f64::from(c.abs())));
-        let legal = Vector::recorded(before) + sum.radiance;
+        let legal = state.vector(slot::RADIANCE) + sum.radiance;
         judge.vector_of((stage, radiance), [r, g, b], legal, size)?;
-        let alpha = Number::recorded(state.number(slot::RADIANCE)) + sum.opacity;
+        let alpha = state.number(slot::RADIANCE) + sum.opacity;
         judge.number((stage, opacity), found_opacity, alpha)?;
         judge.bits((stage, "the bits that are left"), found.light.left[found.index], 0)?;
         Ok(judge.into())
@@ -266,7 +255,7 @@ impl LitCheck<'_> {
 
     /// The sum of all light of a batch, given which lights are hidden. If decisions of a light are open, its part is
     /// everything between the outcomes.
-    fn sum(&self, address: Address, state: &PathState, found: Light<'_>, total: Number) -> Option<Change> {
+    fn sum(&self, address: Address, state: &RayState, found: Light<'_>, total: Number) -> Option<Change> {
         let count = found.count.saturating_sub(found.first).min(BITS);
         let bits = found.bits();
         if found.kind.is_ambient {

@@ -12,7 +12,7 @@
 //! | `scene-sha256` | digest of the scene's data, [`scene_digest`] |
 //! | `samples-sha256` | digest of the picture's size and samples, [`samples_digest`] |
 //! | `outcome` | `proved` or `undecided` |
-//! | `exact`, `legal`, `open` | numbers of pixels with these verdicts |
+//! | `exact`, `legal`, `wide`, `open` | numbers of pixels with these verdicts |
 //! | `sha256` | digest of all lines before |
 //!
 //! A digest reveals changes by mistake. It is not a signature: a person who changes a picture on purpose can also
@@ -33,7 +33,7 @@ pub const VERSION: &str = "2";
 const FIRST: &str = "pinhole-certificate";
 
 /// The keys of the numbers of pixels.
-const COUNTS: [&str; 3] = ["exact", "legal", "open"];
+const COUNTS: [&str; 4] = ["exact", "legal", "wide", "open"];
 
 /// The last key.
 const DIGEST: &str = "sha256";
@@ -56,8 +56,8 @@ pub struct PictureCertificate {
     pub samples: String,
     /// The outcome of the check.
     pub outcome: Outcome,
-    /// The numbers of pixels that are exact, legal and open.
-    pub counts: [u64; 3],
+    /// The numbers of pixels that are exact, legal, wide and open.
+    pub counts: [u64; 4],
 }
 
 /// Why a text is not a certificate.
@@ -146,7 +146,7 @@ impl PictureCertificate {
                 .into_iter()
                 .find(|known| known.name() == outcome)
                 .ok_or(missing("outcome"))?,
-            counts: [number(COUNTS[0])?, number(COUNTS[1])?, number(COUNTS[2])?],
+            counts: [number(COUNTS[0])?, number(COUNTS[1])?, number(COUNTS[2])?, number(COUNTS[3])?],
         })
     }
 }
@@ -224,7 +224,7 @@ mod tests {
             scene: "aa".into(),
             samples: "bb".into(),
             outcome: Outcome::Undecided,
-            counts: [190, 2, 0],
+            counts: [190, 2, 1, 0],
         }
     }
 

@@ -13,7 +13,7 @@ use crate::terminal::failure::Failure;
 use crate::terminal::progress;
 use pinhole::image::Image;
 use pinhole::image::encoding::Encoding;
-use pinhole::verify::finished::{FinishedCertificate, LEAST_EXACT, PixelVerdict};
+use pinhole::verify::finished::{FinishedCertificate, LEAST_EXACT, MOST_WIDE, PixelVerdict};
 use pinhole::verify::picture_certificate::{PictureCertificate, samples_digest, scene_digest};
 use pinhole::verify::written::{Samples, WrittenPicture};
 use pinhole::verify::{Checker, Outcome};
@@ -101,7 +101,8 @@ pub(crate) fn table(judged: &FinishedCertificate) -> String {
 
 /// Returns a failure unless the picture is proved.
 pub(crate) fn verdict(judged: &FinishedCertificate) -> Result<(), Failure> {
-    let [open, violated] = [PixelVerdict::Open, PixelVerdict::Violated].map(|verdict| judged.count(verdict));
+    let [wide, open, violated] =
+        [PixelVerdict::Wide, PixelVerdict::Open, PixelVerdict::Violated].map(|verdict| judged.count(verdict));
     let all = judged.verdicts.len();
     match judged.outcome() {
         Outcome::Proved => Ok(()),
@@ -110,11 +111,16 @@ pub(crate) fn verdict(judged: &FinishedCertificate) -> Result<(), Failure> {
             Err(Failure::CheckFailed(anyhow!("the picture is not legal: {violated} of {all} pixels; {first}")))
         }
         Outcome::Undecided => Err(Failure::Undecided(match judged.open.first() {
-            Some(first) => anyhow!(
+            Some(first) if open == 0 && wide as f64 > MOST_WIDE * all as f64 => anyhow!(
+                "no violation was found, but {wide} of {all} pixels differ from what exact arithmetic gives, with bounds \
+                 so wide that they say little; at most {} % may; the first is {first}",
+                100.0 * MOST_WIDE
+            ),
+            Some(first) if open > 0 => anyhow!(
                 "{open} of {all} pixels differ from what exact arithmetic gives, and nothing says whether rounding may \
                  lead there; the first is {first}"
             ),
-            None => anyhow!(
+            _ => anyhow!(
                 "no violation was found, but fewer than {} % of the pixels are what exact arithmetic gives",
                 100.0 * LEAST_EXACT
             ),
@@ -122,9 +128,10 @@ pub(crate) fn verdict(judged: &FinishedCertificate) -> Result<(), Failure> {
     }
 }
 
-/// The numbers of pixels that are exact, legal and open.
-fn counts(judged: &FinishedCertificate) -> [u64; 3] {
-    [PixelVerdict::Exact, PixelVerdict::Legal, PixelVerdict::Open].map(|verdict| judged.count(verdict) as u64)
+/// The numbers of pixels that are exact, legal, wide and open.
+fn counts(judged: &FinishedCertificate) -> [u64; 4] {
+    [PixelVerdict::Exact, PixelVerdict::Legal, PixelVerdict::Wide, PixelVerdict::Open]
+        .map(|verdict| judged.count(verdict) as u64)
 }
 
 /// Makes the certificate of a picture.

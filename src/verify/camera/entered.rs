@@ -69,7 +69,7 @@ impl SlabCrossing {
     }
 
     /// The union of two crossings.
-    pub(super) fn or(self, other: Self) -> Self {
+    pub(crate) fn or(self, other: Self) -> Self {
         Self { near: self.near.union(other.near), far: self.far.union(other.far) }
     }
 }
@@ -194,6 +194,8 @@ impl EnteredRay {
 /// difference of a device's ray.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct AnyRay {
+    /// The distance from the start at the camera to where the ray enters the scene's box.
+    pub(crate) enter: Interval,
     pub(crate) line: Line,
     pub(crate) slack: Slack,
     /// The slack for distances from the camera, which do not depend on where a ray enters the box, apart from rounding.
@@ -225,6 +227,7 @@ impl CameraRay {
         // If the direction does not have unit length, distances from two points of a line differ by this much more.
         let along = (gamma(16) + 2.0 * bend) * slack.along;
         AnyRay {
+            enter,
             slack_of_distance: Slack { along, ..slack },
             line: Line { origin: origin + enter.low * direction, direction, bend },
             slack,

@@ -121,6 +121,11 @@ impl CameraModel {
         }
     }
 
+    /// The length of the diagonal of the scene's box.
+    pub(super) fn diagonal(&self) -> f64 {
+        (self.scene_max - self.scene_min).length()
+    }
+
     /// The ray through the centre of a pixel and the centre of the lens.
     pub(super) fn ray(&self, [i, j]: [u32; 2]) -> CameraRay {
         // The device computes one quotient of exact numbers.

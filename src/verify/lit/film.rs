@@ -71,7 +71,7 @@ pub(crate) fn judge_start(
 }
 
 /// The relative location of a sample, which is near the pixel's centre.
-fn location(film: &Film, table: &[f32], pixel: [u32; 2], u: [u32; 2]) -> Location {
+pub(crate) fn location(film: &Film, table: &[f32], pixel: [u32; 2], u: [u32; 2]) -> Location {
     let sign = match film.y_axis() {
         YAxis::Up => -1.0,
         YAxis::Down => 1.0,

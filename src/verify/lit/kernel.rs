@@ -31,6 +31,62 @@ impl Hit {
     }
 }
 
+/// The state of a ray as a kernel reads it. Every number is an interval; those of a recording are known exactly.
+#[derive(Clone, Debug)]
+pub(crate) struct RayState {
+    /// The state as it was recorded. If nothing was, it has flags, ids and indices alone.
+    pub(crate) raw: PathState,
+    numbers: [[Number; 4]; PathState::SLOTS],
+}
+
+impl RayState {
+    pub(crate) fn recorded(raw: PathState) -> Self {
+        Self { raw, numbers: raw.slots.map(|four| four.map(|bits| Number::recorded(f32::from_bits(bits)))) }
+    }
+
+    pub(crate) fn vector(&self, slot: usize) -> Vector {
+        let [x, y, z, _] = self.numbers[slot];
+        Vector([x, y, z])
+    }
+
+    pub(crate) fn number(&self, slot: usize) -> Number {
+        self.numbers[slot][3]
+    }
+
+    pub(crate) fn has(&self, flag: u32) -> bool {
+        self.raw.has(flag)
+    }
+
+    /// Sets a number of a slot, by its index from 0 to 3.
+    pub(crate) fn set(&mut self, [slot, index]: [usize; 2], number: Number) {
+        self.numbers[slot][index] = number.fence();
+    }
+}
+
+/// The hit of a ray as a kernel reads it.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct RayHit {
+    /// The distance from where the ray enters the scene's box, and the distance from its origin to there.
+    pub(crate) t: Number,
+    pub(crate) distance: Number,
+    pub(crate) id: u32,
+    pub(crate) shape_index: u32,
+}
+
+impl From<Hit> for RayHit {
+    fn from(Hit { t, id, shape_index, distance }: Hit) -> Self {
+        Self { t: Number::recorded(t), distance: Number::recorded(distance), id, shape_index }
+    }
+}
+
+/// What becomes of a kernel's results.
+pub(crate) enum Output<'a> {
+    /// They are compared with what the device recorded.
+    Recorded(&'a PathState),
+    /// All of them are legal.
+    Legal(Box<RayState>),
+}
+
 /// One invocation of the kernel, for one combination of its open decisions.
 pub(crate) struct Kernel<'a> {
     pub(crate) scene: &'a Scene,
@@ -38,9 +94,9 @@ pub(crate) struct Kernel<'a> {
     /// Whether this is the kernel for scenes in which every material is matt or emissive.
     pub(crate) is_matt: bool,
     pub(crate) address: Address,
-    pub(crate) before: &'a PathState,
-    pub(crate) hit: Hit,
-    pub(crate) after: &'a PathState,
+    pub(crate) before: &'a RayState,
+    pub(crate) hit: RayHit,
+    pub(crate) after: Output<'a>,
     pub(crate) judge: Judge,
     pub(crate) choices: &'a mut Choices,
 }
@@ -66,6 +122,58 @@ impl<'a> Kernel<'a> {
 
     pub(crate) fn table_numbers(&self, at: u32) -> [f32; 4] {
         self.table(at).map(f32::from_bits)
+    }
+}
+
+impl<'a> Kernel<'a> {
+    /// The recorded result. Kernels of paths have no other.
+    pub(crate) fn recorded(&self) -> &'a PathState {
+        match self.after {
+            Output::Recorded(after) => after,
+            Output::Legal(_) => &PathState::EMPTY,
+        }
+    }
+
+    /// Writes three numbers of a slot. Their bounds are narrow or wide relative to `size` or the largest of them.
+    pub(crate) fn write(&mut self, name: Name, slot: usize, legal: Vector, size: f64) -> Result<(), Mismatch> {
+        match &mut self.after {
+            Output::Recorded(after) => self.judge.vector_of(name, after.vector(slot), legal, size),
+            Output::Legal(state) => {
+                (0..3).for_each(|index| state.set([slot, index], legal.0[index]));
+                Ok(())
+            }
+        }
+    }
+
+    /// Writes a number of a slot, by its index from 0 to 3.
+    pub(crate) fn write_number(
+        &mut self,
+        name: Name,
+        at: [usize; 2],
+        legal: Number,
+        size: f64,
+    ) -> Result<(), Mismatch> {
+        let [slot, index] = at;
+        match &mut self.after {
+            Output::Recorded(after) => {
+                self.judge.number_of(name, f32::from_bits(after.slots[slot][index]), legal, size)
+            }
+            Output::Legal(state) => {
+                state.set(at, legal);
+                Ok(())
+            }
+        }
+    }
+
+    /// Writes a word of a slot that is not a number.
+    pub(crate) fn write_bits(&mut self, name: Name, [slot, index]: [usize; 2], legal: u32) -> Result<(), Mismatch> {
+        match &mut self.after {
+            Output::Recorded(after) => self.judge.bits(name, after.slots[slot][index], legal),
+            Output::Legal(state) => {
+                state.raw.slots[slot][index] = legal;
+                Ok(())
+            }
+        }
     }
 }
 
@@ -113,18 +221,12 @@ impl Kernel<'_> {
     /// The surface that the ray hits; `None` for a miss.
     pub(crate) fn vertex(&mut self) -> Result<Option<Vertex>, Mismatch> {
         let (before, hit) = (self.before, self.hit);
-        let origin = Vector::recorded(before.vector(slot::ORIGIN));
-        let direction = Vector::recorded(before.vector(slot::DIRECTION));
+        let (origin, direction) = (before.vector(slot::ORIGIN), before.vector(slot::DIRECTION));
         // A camera ray starts at the box of the spheres, and may have crossed the ground before.
-        let behind =
-            if self.address.surface == 0 { Number::recorded(before.number(slot::FIRST)) } else { Number::ZERO };
+        let behind = if self.address.surface == 0 { before.number(slot::FIRST) } else { Number::ZERO };
         let ground = if before.has(flag::ON_GROUND) { None } else { self.ground_distance(origin, direction, behind) };
         let has_sphere = hit.id != NO_ID;
-        let to_sphere = if has_sphere {
-            Number::recorded(hit.distance) + Number::recorded(hit.t)
-        } else {
-            Number::known(NO_HIT.into())
-        };
+        let to_sphere = if has_sphere { hit.distance + hit.t } else { Number::known(NO_HIT.into()) };
         if let Some(distance) = ground
             && self.choices.decide(distance.is_less(to_sphere))
         {
@@ -150,11 +252,13 @@ impl Kernel<'_> {
         self.choices.decide((-behind).is_less(t)).then_some(t)
     }
 
-    /// Compares the recorded point, and returns it as an exact value.
-    fn compared(&mut self, position: Vector, size: f64) -> Result<Vector, Mismatch> {
-        let found = self.after.vector(slot::ORIGIN);
-        self.judge.vector_of(POSITION, found, position, size)?;
-        Ok(Vector::recorded(found))
+    /// Writes the point, and returns it. If it was recorded, it is exact from then on.
+    fn at(&mut self, position: Vector, size: f64) -> Result<Vector, Mismatch> {
+        self.write(POSITION, slot::ORIGIN, position, size)?;
+        match self.after {
+            Output::Recorded(after) => Ok(Vector::recorded(after.vector(slot::ORIGIN))),
+            Output::Legal(_) => Ok(position.fence()),
+        }
     }
 
     fn ground_vertex(&mut self, origin: Vector, direction: Vector, distance: Number) -> Result<Vertex, Mismatch> {
@@ -164,7 +268,7 @@ impl Kernel<'_> {
         let above = (on_ray - Vector::recorded(lighting.ground_point)).dot(normal);
         let position = (on_ray - normal * above).fence();
         let size = distance.interval().high;
-        let position = self.compared(position, size)?;
+        let position = self.at(position, size)?;
         Ok(Vertex {
             position,
             normal,
@@ -188,31 +292,31 @@ impl Kernel<'_> {
         let color = self.scene.color(hit.id).to_array();
         let opacities = [surface.opacity, appearance.alpha(hit.id)];
 
-        let (line, origin, slack) = entered(before.vector(slot::ORIGIN), before.vector(slot::DIRECTION), hit.distance);
+        let direction = before.vector(slot::DIRECTION);
+        let (line, origin, slack) = entered(before.vector(slot::ORIGIN), direction, hit.distance);
         let Some(test) = SphereTest::new(&line, sphere, slack) else {
             return Err(self.judge.fail(HIT, format!("sphere {} cannot be hit", hit.id)));
         };
         let center = Vector::recorded([x, y, z]);
-        let direction = Vector::recorded(before.vector(slot::DIRECTION));
         let middle = (center - origin).dot(direction);
-        let is_far_side = before.has(flag::INSIDE) && hit.id == before.departure().id;
+        let is_far_side = before.has(flag::INSIDE) && hit.id == before.raw.departure().id;
         let (half, exact) = if is_far_side {
             let exact = (wide([x, y, z]) - line.origin).dot(line.direction).abs();
             (middle.abs().interval(), exact)
         } else {
             (test.half, test.exact_half())
         };
-        let is_behind = is_far_side || self.choices.decide(middle.is_less(Number::recorded(hit.t)));
+        let is_behind = is_far_side || self.choices.decide(middle.is_less(hit.t));
         let chord = Chord { half, exact, is_behind };
         let (normal, error) = normal_at(&test, &line, chord, radius, slack);
         let mut outward = Vector::around(normal, error);
 
         let r = Number::recorded(radius);
-        let far = Number::known(64.0) * (Number::recorded(hit.t) + Number::recorded(hit.distance));
+        let far = Number::known(64.0) * (hit.t + hit.distance);
         let is_on_ray = self.choices.decide(r.is_more(far));
-        let position = if is_on_ray { origin + direction * Number::recorded(hit.t) } else { center + outward * r };
-        let position = self.compared(position.fence(), radius.into())?;
-        if !is_on_ray {
+        let position = if is_on_ray { origin + direction * hit.t } else { center + outward * r };
+        let position = self.at(position.fence(), radius.into())?;
+        if !is_on_ray && matches!(self.after, Output::Recorded(_)) {
             outward = self.normal_by_point(outward, position, sphere)?;
         }
         let is_back = self.choices.decide(outward.dot(direction).is_above_zero());
@@ -248,18 +352,23 @@ impl Kernel<'_> {
     }
 }
 
-/// A ray that starts where it enters the scene's box, at a known distance: its line, its start, and the maximum
-/// difference of the kernel's ray.
-fn entered(origin: [f32; 3], direction: [f32; 3], distance: f32) -> (Line, Vector, Slack) {
-    let (start, along) = (wide(origin), wide(direction));
-    let distance = f64::from(distance);
-    let moved = start + distance * along;
-    if distance == 0.0 {
-        return (Line::new(origin, direction), Vector::recorded(origin), Slack::default());
+/// A ray that starts where it enters the scene's box: its line, its start, and the maximum difference of the kernel's
+/// ray.
+fn entered(origin: Vector, direction: Vector, distance: Number) -> (Line, Vector, Slack) {
+    let [(start, moved_start), (along, turned)] = [origin, direction].map(Vector::ball);
+    let Interval { low, high } = distance.interval();
+    let middle = 0.5 * (low + high);
+    let moved = start + middle * along;
+    let mut line = Line::exact(moved, along);
+    let mut error = moved_start + middle * turned;
+    if high != 0.0 {
+        error += PAD * (gamma(2) * (start.abs() + (high * along).abs())) + DVec3::splat(2.0 * FLUSH);
     }
-    let error = PAD * (gamma(2) * (start.abs() + (distance * along).abs())) + DVec3::splat(2.0 * FLUSH);
-    let origin = [0, 1, 2].map(|axis| Number::around(moved[axis], error[axis]));
-    let length = error.length() + U * FLUSH;
-    let slack = Slack { across: length, along: length, direction: 0.0 };
-    (Line::exact(moved, along), Vector(origin), slack)
+    let around = error + (high - middle) * (along.abs() + turned);
+    let origin = [0, 1, 2].map(|axis| Number::around(moved[axis], around[axis]));
+    let turned = PAD * turned.length();
+    line.bend += 2.5 * turned;
+    let length = if error == DVec3::ZERO { 0.0 } else { PAD * error.length() + U * FLUSH };
+    let slack = Slack { across: length, along: length + PAD * (high - middle), direction: turned };
+    (line, Vector(origin), slack)
 }

@@ -64,6 +64,13 @@ impl Vector {
         })
     }
 
+    /// The middle of the vector's intervals, and half their widths.
+    pub(crate) fn ball(self) -> (DVec3, DVec3) {
+        let axes = self.intervals();
+        let middle = DVec3::from(axes.map(|axis| 0.5 * (axis.low + axis.high)));
+        (middle, DVec3::from(axes.map(|axis| 0.5 * (axis.high - axis.low))))
+    }
+
     pub(crate) fn largest(self) -> Number {
         let Self([x, y, z]) = self;
         x.max(y).max(z)

@@ -45,7 +45,7 @@ impl Kernel<'_> {
     }
 
     pub(crate) fn follow(&mut self) -> Result<(), Mismatch> {
-        let (before, after) = (self.before, self.after);
+        let (before, after) = (&self.before.raw, self.recorded());
         let radiance_so_far = radiance_so_far(before);
         let alpha = before.number(slot::RADIANCE);
         let through = Vector::recorded(before.vector(slot::THROUGHPUT));
@@ -101,7 +101,7 @@ impl Kernel<'_> {
 
     /// Compares the sphere that the path leaves, and its exit distance along the next ray.
     fn compare_departure(&mut self, at: &Vertex) -> Result<(), Mismatch> {
-        let (after, departure) = (self.after, self.after.departure());
+        let (after, departure) = (self.recorded(), self.recorded().departure());
         let (id, shape_index) = if at.is_sphere() { (self.hit.id, self.hit.shape_index) } else { (NO_ID, 0) };
         self.judge.bits(DEPARTURE, departure.id, id)?;
         self.judge.bits(DEPARTURE, departure.shape_index, shape_index)?;
@@ -115,33 +115,33 @@ impl Kernel<'_> {
 
     pub(crate) fn same(&mut self, slots: &[usize]) -> Result<(), Mismatch> {
         const KEPT: Name = (LitStage::Scatter, "an unchanged part of the path's state");
-        let states = [self.before, self.after];
+        let states = [&self.before.raw, self.recorded()];
         slots.iter().try_for_each(|slot| self.judge.same(KEPT, states, *slot))
     }
 
     fn compare_radiance(&mut self, radiance: Vector, alpha: Number) -> Result<(), Mismatch> {
-        let after = self.after;
+        let after = self.recorded();
         self.judge.vector(RADIANCE, after.vector(slot::RADIANCE), radiance)?;
         self.judge.number(ALPHA, after.number(slot::RADIANCE), alpha)
     }
 
     /// Compares the pending light, and whether it must be tested for occlusion: 1 or 0.
     pub(crate) fn compare_light(&mut self, light: Vector, open: Number) -> Result<(), Mismatch> {
-        let after = self.after;
+        let after = self.recorded();
         self.judge.vector(PENDING, after.vector(slot::PENDING), light)?;
         self.judge.number(LIGHT, after.number(slot::PENDING), open)
     }
 
     /// Compares the state if no light was sampled. The direction of the light does not matter then.
     fn compare_no_light(&mut self) -> Result<(), Mismatch> {
-        let after = self.after;
+        let after = self.recorded();
         self.judge.number(LIGHT, after.number(slot::SHADOW), Number::ZERO)?;
         self.compare_light(Vector::ZERO, Number::ZERO)
     }
 
     /// Judges a path that ends because its ray hits nothing.
     fn end(&mut self, radiance: Vector, alpha: f32) -> Result<(), Mismatch> {
-        let after = self.after;
+        let after = self.recorded();
         self.compare_radiance(radiance, Number::recorded(alpha))?;
         self.judge.vector(ORIGIN, after.vector(slot::ORIGIN), Vector::ZERO)?;
         self.judge.bits(FLAGS, after.flags(), 0)?;
@@ -152,13 +152,13 @@ impl Kernel<'_> {
 
     /// Judges a path that ends on a surface. The next ray does not matter then.
     fn stop(&mut self) -> Result<(), Mismatch> {
-        self.judge.bits(FLAGS, self.after.flags() & flag::ALIVE, 0)?;
+        self.judge.bits(FLAGS, self.recorded().flags() & flag::ALIVE, 0)?;
         self.compare_no_light()
     }
 
     /// Judges a path that passes through a surface as if it were not there.
     fn pass(&mut self, at: &Vertex, radiance_so_far: Vector, arriving: Vector) -> Result<(), Mismatch> {
-        let (before, after) = (self.before, self.after);
+        let (before, after) = (&self.before.raw, self.recorded());
         self.compare_radiance(radiance_so_far, Number::recorded(before.number(slot::RADIANCE)))?;
         self.same(&[slot::FIRST])?;
         // Glass ends at its far side, even if the path passes through that side.
@@ -182,12 +182,12 @@ impl Kernel<'_> {
         let is_inside = at.is_sphere() && is_behind != at.is_back;
         let side = if is_inside { flag::INSIDE } else { 0 };
         let ground = if at.is_sphere() { 0 } else { flag::ON_GROUND };
-        self.judge.bits(FLAGS, self.after.flags(), side | ground | flags)
+        self.judge.bits(FLAGS, self.recorded().flags(), side | ground | flags)
     }
 
     /// Judges a path that a surface scatters.
     fn bounce(&mut self, at: &Surface, through: Vector) -> Result<(), Mismatch> {
-        let (after, surface) = (self.after, self.address.surface);
+        let (after, surface) = (self.recorded(), self.address.surface);
         let lobe = unit(self.pair(3)[0]);
         let next = self.scatter_light(at, lobe, self.pair(2));
         let is_behind = self.choices.decide(next.direction.0[2].is_less(Number::ZERO));
@@ -207,7 +207,7 @@ impl Kernel<'_> {
         let medium = if is_glass && is_behind {
             if at.vertex.is_back { Vector::ZERO } else { at.material.absorption }
         } else {
-            Vector::recorded(self.before.vector(slot::MEDIUM))
+            self.before.vector(slot::MEDIUM)
         };
         self.judge.vector(MEDIUM, after.vector(slot::MEDIUM), medium)?;
 

@@ -59,7 +59,7 @@ impl Kernel<'_> {
     }
 
     pub(crate) fn sample_light(&mut self, at: &Surface, through: Vector) -> Result<(), Mismatch> {
-        let (lighting, after) = (self.lighting(), self.after);
+        let (lighting, after) = (self.lighting(), self.recorded());
         if lighting.source_count == 0 {
             self.judge.bits(EMITTER, after.departure().emitter, NO_EMITTER)?;
             return self.same(&[slot::SHADOW, slot::PENDING]);
@@ -122,7 +122,7 @@ impl Kernel<'_> {
 
     fn sample_lamp(&mut self, source: u32, position: Vector, u: [u32; 2]) -> LightSample {
         let light = self.table(3 * source + 2)[0];
-        let recorded = Some(Vector::recorded(self.after.vector(slot::SHADOW)));
+        let recorded = Some(Vector::recorded(self.recorded().vector(slot::SHADOW)));
         let Lamp { direction, distance, strength, sun } = self.lamp(light, position, u, recorded);
         let sources = self.sources();
         let density = if sun.is_zero() { Number::ZERO } else { Number::ONE / (Number::TWO * pi() * sun * sources) };
@@ -188,7 +188,7 @@ impl Kernel<'_> {
         let axis = toward.fence().map(|c| c / length);
         let direction = axes_around(axis, self.choices).to_world(cone_direction(u, k));
         // Narrowed to the fenced direction in the recorded state, if it is legal.
-        let recorded = Vector::recorded(self.after.vector(slot::SHADOW));
+        let recorded = Vector::recorded(self.recorded().vector(slot::SHADOW));
         let direction = direction.zip(recorded, Number::narrowed);
         let middle = toward.dot(direction);
         let foot = toward - direction * middle;
@@ -216,7 +216,7 @@ impl Kernel<'_> {
         if sampling != MULTIPLE {
             return Number::ZERO;
         }
-        let scattered = Number::recorded(self.before.number(slot::DIRECTION));
+        let scattered = self.before.number(slot::DIRECTION);
         scattered / (scattered + light_density).max(Number::constant(1e-30))
     }
 }
@@ -243,7 +243,7 @@ impl Kernel<'_> {
             return Vector::recorded(lighting.background);
         }
         let sources = Number::known(lighting.source_count.max(1).into());
-        let direction = Vector::recorded(self.before.vector(slot::DIRECTION));
+        let direction = self.before.vector(slot::DIRECTION);
         let density = self.sky_density(direction) / sources;
         let weight = self.weight_of_hit_light(density);
         let mut sum = self.sky_radiance(direction) * weight;

@@ -41,7 +41,7 @@ impl Kernel<'_> {
         if is_hidden {
             return Change::NONE;
         }
-        let out = -Vector::recorded(self.before.vector(slot::DIRECTION));
+        let out = -self.before.vector(slot::DIRECTION);
         let at = light.saturating_mul(3);
         let (toward, strength) = if self.table(at)[3] == HEAD {
             let [r, g, b, _] = self.table_numbers(at.saturating_add(1));
@@ -63,7 +63,7 @@ impl Kernel<'_> {
             let share = share * hidden_count * self.ambient_luminance() / total;
             return self.caught(share);
         }
-        let albedo = Vector::recorded(self.before.vector(slot::ALBEDO));
+        let albedo = self.before.vector(slot::ALBEDO);
         // Both are whole numbers.
         let open = Number::known(f64::from(count) - f64::from(hidden));
         let ambient = Vector::recorded(lighting.ambient);
@@ -72,17 +72,17 @@ impl Kernel<'_> {
 
     /// The light that the surface reflects, for a light of strength 1.
     fn reflected(&mut self, out: Vector, toward: Vector) -> Vector {
-        let [share, alpha, energies, _] = self.before.slots[slot::LOBE];
-        let [share, alpha] = [share, alpha].map(|bits| Number::recorded(f32::from_bits(bits)));
-        let normal = Vector::recorded(self.before.vector(slot::NORMAL));
-        let albedo = Vector::recorded(self.before.vector(slot::ALBEDO));
+        let Vector([share, alpha, _]) = self.before.vector(slot::LOBE);
+        let energies = self.before.raw.slots[slot::LOBE][2];
+        let normal = self.before.vector(slot::NORMAL);
+        let albedo = self.before.vector(slot::ALBEDO);
         let along = normal.dot(toward);
         let cosine = along.max(Number::ZERO);
         let seen = albedo * ((Number::ONE - share) * cosine);
         if share.is_zero() || !self.choices.decide(along.is_above_zero()) {
             return seen;
         }
-        let weight = Number::recorded(self.before.vector(slot::THROUGHPUT)[1]);
+        let weight = self.before.vector(slot::THROUGHPUT).0[1];
         let half = (out + toward).normalized();
         let least = Number::constant(1e-6);
         let [o, i] = [normal.dot(out).max(least), cosine.max(least)];
@@ -107,7 +107,7 @@ fn luminance(color: [f32; 3]) -> Number {
 impl Kernel<'_> {
     /// Whether the surface is a shadow catcher, of which only shadows are seen.
     pub(crate) fn is_caught(&self) -> bool {
-        self.before.number(slot::ALBEDO) > 0.0
+        !self.before.number(slot::ALBEDO).is_zero()
     }
 
     pub(crate) fn ambient_luminance(&self) -> Number {
@@ -124,7 +124,7 @@ impl Kernel<'_> {
         if kind == HEAD {
             return Number::ZERO;
         }
-        let position = Vector::recorded(self.before.vector(slot::ORIGIN));
+        let position = self.before.vector(slot::ORIGIN);
         let (axis, strength) = if kind == DIRECTIONAL {
             (place, Number::TWO / (Number::TWO - size))
         } else {
@@ -158,7 +158,7 @@ impl Kernel<'_> {
     /// The change of radiance and opacity if the ground lacks a share of all light.
     fn caught(&self, share: Number) -> Change {
         let lighting = self.lighting();
-        let alpha = Number::recorded(self.before.number(slot::ALBEDO)) * share;
+        let alpha = self.before.number(slot::ALBEDO) * share;
         if lighting.flags & flag::TRANSPARENT != 0 {
             return Change { radiance: Vector::ZERO, opacity: alpha };
         }

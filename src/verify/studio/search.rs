@@ -29,14 +29,14 @@ impl Kernel<'_> {
     pub(crate) fn lamp_of_surface(&mut self, light: u32) -> Lamp {
         let number = 2 + PAIRS.wrapping_mul(self.address.surface).wrapping_add(light);
         let u = self.numbers(self.address.sample, number);
-        let position = Vector::recorded(self.before.vector(slot::ORIGIN));
+        let position = self.before.vector(slot::ORIGIN);
         self.lamp(light, position, u, None)
     }
 
     /// Whether a light is hidden from the surface. A light behind the surface is not searched for.
     pub(crate) fn is_light_hidden(&mut self, candidates: &Candidates, light: u32) -> Obstacle {
         let Lamp { direction, distance, .. } = self.lamp_of_surface(light);
-        let normal = Vector::recorded(self.before.vector(slot::NORMAL));
+        let normal = self.before.vector(slot::NORMAL);
         if !self.choices.decide(normal.dot(direction).is_above_zero()) {
             return Obstacle::NEVER;
         }
@@ -49,7 +49,7 @@ impl Kernel<'_> {
         let sample = self.address.sample.wrapping_mul(lighting.occlusion_samples).wrapping_add(index);
         let number = 2 + PAIRS.wrapping_mul(self.address.surface).wrapping_add(PAIRS - 1);
         let u = self.numbers(sample, number);
-        let normal = Vector::recorded(self.before.vector(slot::NORMAL));
+        let normal = self.before.vector(slot::NORMAL);
         let direction = axes_around(normal, self.choices).to_world(cosine_direction(u));
         self.is_hidden(candidates, direction, Number::recorded(lighting.occlusion_radius))
     }
@@ -57,15 +57,15 @@ impl Kernel<'_> {
     fn is_hidden(&mut self, candidates: &Candidates, direction: Vector, distance: Number) -> Obstacle {
         let state = self.before;
         if state.has(flag::BACK) {
-            let radius = Number::recorded(f32::from_bits(state.departure().emitter));
-            let to_center = Vector::recorded(state.vector(slot::NORMAL)) * radius;
+            let radius = state.number(slot::DEPARTURE);
+            let to_center = state.vector(slot::NORMAL) * radius;
             let to_far_side = (Number::TWO * to_center.dot(direction)).max(Number::ZERO);
             if self.choices.decide(to_far_side.is_less(distance)) {
                 return Obstacle::ALWAYS;
             }
         }
         if !state.has(flag::ON_GROUND) {
-            let origin = Vector::recorded(state.vector(slot::ORIGIN));
+            let origin = state.vector(slot::ORIGIN);
             let ground = self.ground_distance(origin, direction, Number::ZERO);
             if ground.is_some_and(|t| self.choices.decide(t.is_less(distance))) {
                 return Obstacle::ALWAYS;
@@ -78,10 +78,10 @@ impl Kernel<'_> {
     fn is_occluded(&self, candidates: &Candidates, toward: Vector, distance: Number) -> Obstacle {
         let (scene, state) = (self.scene, self.before);
         let corners = self.inputs.occluders.map(wide);
-        let Some(ray) = Entry::aimed(corners, wide(state.vector(slot::ORIGIN)), toward) else {
+        let Some(ray) = Entry::aimed(corners, state.vector(slot::ORIGIN), toward) else {
             return Obstacle { must: false, ..Obstacle::ALWAYS };
         };
-        let departed = scene.spheres().get(state.departure().id as usize);
+        let departed = scene.spheres().get(state.raw.departure().id as usize);
         let are_opaque = scene.is_opaque();
         ray.hidden(candidates, distance, |candidate| {
             let is_own = departed.is_some_and(|own| is_same(candidate.sphere, *own));
@@ -98,10 +98,9 @@ const MOST_DISTANT: f64 = 1e30;
 
 impl Entry {
     /// All rays from a point in a direction; `None` if the direction, or the entry into the box, is hardly known.
-    pub(crate) fn aimed([low, high]: [DVec3; 2], origin: DVec3, direction: Vector) -> Option<Self> {
+    pub(crate) fn aimed([low, high]: [DVec3; 2], origin: Vector, direction: Vector) -> Option<Self> {
         let axes = direction.intervals();
-        let middle = DVec3::from(axes.map(|axis| 0.5 * (axis.low + axis.high)));
-        let half = DVec3::from(axes.map(|axis| 0.5 * (axis.high - axis.low)));
+        let [(origin, displaced), (middle, half)] = [origin, direction].map(Vector::ball);
         // The middle has the error of an addition in f64.
         let turned = PAD * half.length() + 4.0 * f64::EPSILON * middle.length();
         // This is also false for NaN.
@@ -111,7 +110,10 @@ impl Entry {
         }
         let mut crossing = BoxCrossing::UNBOUNDED;
         for axis in 0..3 {
-            crossing.cut(slab([low[axis], high[axis]], origin[axis], axes[axis]));
+            // Planes that are displaced instead of the origin, both ways.
+            let planes = |sign: f64| [low[axis], high[axis]].map(|plane| plane + sign * displaced[axis]);
+            let [one, other] = [-1.0, 1.0].map(|sign| slab(planes(sign), origin[axis], axes[axis]));
+            crossing.cut(if displaced[axis] > 0.0 { one.or(other) } else { one });
         }
         let BoxCrossing { enter, leave } = crossing;
         if enter.high > MOST_DISTANT {
@@ -123,13 +125,14 @@ impl Entry {
         let mut line = Line::exact(origin, middle);
         line.bend += 2.5 * turned;
         let (may_hit_box, may_miss_box) = (enter.low <= leave.high, enter.high > leave.low);
-        let (mut across, mut along) = (0.0, 0.0);
+        let displaced = PAD * displaced.length();
+        let (mut across, mut along) = (displaced, displaced);
         if enter.high > 0.0 {
             let start = 0.5 * (enter.low + enter.high);
             let moved = start * middle;
             // The error of the start: two roundings of a product and a sum, and the error of the direction.
             let rounded = PAD * gamma(6) * (origin.abs() + moved.abs()) + DVec3::splat(2.0 * FLUSH);
-            across = rounded.length() + PAD * enter.high * turned;
+            across += rounded.length() + PAD * enter.high * turned;
             along = across + enter.high - start;
             line.origin = origin + moved;
         }

@@ -6,7 +6,7 @@ use crate::light::codes::material::{EMISSIVE, LAMBERT};
 use crate::recording::lit::{flag, slot};
 use crate::verify::lit::certificate::LitStage;
 use crate::verify::lit::judge::{Mismatch, Name};
-use crate::verify::lit::kernel::{Kernel, Vertex};
+use crate::verify::lit::kernel::{Kernel, Output, Vertex};
 use crate::verify::lit::sampling::Material;
 use crate::verify::number::{Number, Vector};
 use crate::verify::rounding::Interval;
@@ -37,15 +37,15 @@ pub(crate) enum HitKind {
 
 impl Kernel<'_> {
     pub(crate) fn follow_surface(&mut self, is_last: bool) -> Result<HitKind, Mismatch> {
-        let (before, after, lighting) = (self.before, self.after, self.lighting());
+        let (before, lighting) = (self.before, self.lighting());
         let is_transparent = lighting.flags & flag::TRANSPARENT != 0;
         let shown = Vector::recorded(if is_transparent { [0.0; 3] } else { lighting.background });
-        let left_over = Number::recorded(before.vector(slot::THROUGHPUT)[0]);
+        let left_over = before.vector(slot::THROUGHPUT).0[0];
         self.unchanged(slot::DIRECTION)?;
         let Some(vertex) = self.vertex()? else {
             self.added(shown * left_over, Number::ZERO)?;
-            self.judge.vector(ORIGIN, after.vector(slot::ORIGIN), Vector::ZERO)?;
-            self.judge.bits(FLAGS, after.flags(), 0)?;
+            self.write(ORIGIN, slot::ORIGIN, Vector::ZERO, 0.0)?;
+            self.write_bits(FLAGS, [slot::ORIGIN, 3], 0)?;
             let others = [slot::DEPARTURE, slot::THROUGHPUT, slot::FIRST];
             let of_surface = [slot::NORMAL, slot::ALBEDO, slot::LOBE];
             others.into_iter().chain(of_surface).try_for_each(|slot| self.unchanged(slot))?;
@@ -55,7 +55,7 @@ impl Kernel<'_> {
         let is_caught = !vertex.is_sphere() && lighting.flags & flag::CATCHER != 0;
         let is_emitter = material.kind == EMISSIVE;
 
-        let far = Number::recorded(before.number(slot::FIRST)) + vertex.distance;
+        let far = before.number(slot::FIRST) + vertex.distance;
         let fade = self.faded(far);
         let [of_material, alpha] = vertex.opacities.map(Number::recorded);
         let opacity = alpha * of_material;
@@ -83,24 +83,22 @@ impl Kernel<'_> {
         }
 
         let is_first = self.address.surface == 0 && !is_caught;
-        let first =
-            if is_first { color.map(|c| c.min(Number::ONE)) } else { Vector::recorded(before.vector(slot::FIRST)) };
-        self.judge.vector(FIRST, after.vector(slot::FIRST), first)?;
-        self.judge.number(LENGTH, after.number(slot::FIRST), far)?;
-        self.compare_passed(&vertex)?;
-        let [found_rest, found_lit, zero, one_more] = after.slots[slot::THROUGHPUT].map(f32::from_bits);
+        let first = if is_first { color.map(|c| c.min(Number::ONE)) } else { before.vector(slot::FIRST) };
+        self.write(FIRST, slot::FIRST, first, 0.0)?;
+        self.write_number(LENGTH, [slot::FIRST, 3], far, 0.0)?;
+        self.write_passed(&vertex)?;
         let size = left_over.interval().high;
-        self.judge.number_of(REST, found_rest, rest, size)?;
-        self.judge.number_of(WEIGHT, found_lit, lit, size)?;
-        for nothing in [zero, one_more] {
-            self.judge.number(WEIGHT, nothing, Number::ZERO)?;
+        self.write_number(REST, [slot::THROUGHPUT, 0], rest, size)?;
+        self.write_number(WEIGHT, [slot::THROUGHPUT, 1], lit, size)?;
+        for nothing in [2, 3] {
+            self.write_number(WEIGHT, [slot::THROUGHPUT, nothing], Number::ZERO, 0.0)?;
         }
-        self.judge.vector(NORMAL, after.vector(slot::NORMAL), vertex.normal)?;
-        self.judge.bits(NORMAL, after.bits(slot::NORMAL), 0)?;
-        self.judge.vector_of(ALBEDO, after.vector(slot::ALBEDO), color * lit, size)?;
+        self.write(NORMAL, slot::NORMAL, vertex.normal, 0.0)?;
+        self.write_bits(NORMAL, [slot::NORMAL, 3], 0)?;
+        self.write(ALBEDO, slot::ALBEDO, color * lit, size)?;
         let caught = if is_caught { left_over } else { Number::ZERO };
-        self.judge.number(ALBEDO, after.number(slot::ALBEDO), caught)?;
-        self.compare_lobe(&material)?;
+        self.write_number(ALBEDO, [slot::ALBEDO, 3], caught, 0.0)?;
+        self.write_lobe(&material)?;
 
         let ends = is_last || is_caught || !self.choices.decide(rest.is_more(Number::ZERO));
         let is_closed = vertex.is_back && !self.choices.decide(opacity.is_less(Number::ONE));
@@ -111,7 +109,7 @@ impl Kernel<'_> {
             (!vertex.is_sphere(), flag::ON_GROUND),
         ];
         let flags = flags.into_iter().filter(|(is_set, _)| *is_set).map(|(_, flag)| flag).sum();
-        self.judge.bits(FLAGS, after.flags(), flags)?;
+        self.write_bits(FLAGS, [slot::ORIGIN, 3], flags)?;
         Ok(if is_emitter { HitKind::Emitter } else { HitKind::Surface })
     }
 
@@ -123,40 +121,39 @@ impl Kernel<'_> {
     }
 
     fn unchanged(&mut self, slot: usize) -> Result<(), Mismatch> {
-        self.judge.same(KEPT, [self.before, self.after], slot)
+        match &self.after {
+            Output::Recorded(after) => self.judge.same(KEPT, [&self.before.raw, after], slot),
+            // The new state began as the one before.
+            Output::Legal(_) => Ok(()),
+        }
     }
 
-    /// Compares radiance and opacity with the sums of their previous values and the additions.
+    /// Writes radiance and opacity: the sums of their previous values and the additions.
     fn added(&mut self, radiance: Vector, opacity: Number) -> Result<(), Mismatch> {
-        let (before, after) = (self.before, self.after);
-        let sum = Vector::recorded(before.vector(slot::RADIANCE)) + radiance;
-        self.judge.vector(RADIANCE, after.vector(slot::RADIANCE), sum)?;
-        let alpha = Number::recorded(before.number(slot::RADIANCE)) + opacity;
-        self.judge.number(ALPHA, after.number(slot::RADIANCE), alpha)
+        let before = self.before;
+        self.write(RADIANCE, slot::RADIANCE, before.vector(slot::RADIANCE) + radiance, 0.0)?;
+        self.write_number(ALPHA, [slot::RADIANCE, 3], before.number(slot::RADIANCE) + opacity, 0.0)
     }
 
-    /// Compares the sphere that the ray passes, its radius, and the distance to its far side.
-    fn compare_passed(&mut self, vertex: &Vertex) -> Result<(), Mismatch> {
-        let departure = self.after.departure();
+    /// Writes the sphere that the ray passes, its radius, and the distance to its far side.
+    fn write_passed(&mut self, vertex: &Vertex) -> Result<(), Mismatch> {
         let is_sphere = vertex.is_sphere();
         let (id, index) = if is_sphere { (self.hit.id, self.hit.shape_index) } else { (NO_ID, 0) };
-        self.judge.bits(DEPARTURE, departure.id, id)?;
-        self.judge.bits(DEPARTURE, departure.shape_index, index)?;
+        self.write_bits(DEPARTURE, [slot::DEPARTURE, 0], id)?;
+        self.write_bits(DEPARTURE, [slot::DEPARTURE, 1], index)?;
         let radius = Number::recorded(vertex.sphere[3]);
-        self.judge.number(DEPARTURE, f32::from_bits(departure.emitter), radius)?;
-        let direction = Vector::recorded(self.before.vector(slot::DIRECTION));
-        let exit = vertex.exit_distance(direction);
+        self.write_number(DEPARTURE, [slot::DEPARTURE, 3], radius, 0.0)?;
+        let exit = vertex.exit_distance(self.before.vector(slot::DIRECTION));
         let size = f64::from(vertex.sphere[3]);
-        self.judge.number_of(EXIT_DISTANCE, departure.exit_distance, exit, size)
+        self.write_number(EXIT_DISTANCE, [slot::DEPARTURE, 2], exit, size)
     }
 
-    /// Compares the share of the lobe, the square of its roughness, and the index of its energies.
-    fn compare_lobe(&mut self, material: &Material) -> Result<(), Mismatch> {
-        let [share, alpha, energies, nothing] = self.after.slots[slot::LOBE];
+    /// Writes the share of the lobe, the square of its roughness, and the index of its energies.
+    fn write_lobe(&mut self, material: &Material) -> Result<(), Mismatch> {
         let expected = if material.kind == LAMBERT { material.parameter } else { Number::ZERO };
-        self.judge.number(LOBE, f32::from_bits(share), expected)?;
-        self.judge.number(LOBE, f32::from_bits(alpha), material.alpha)?;
-        self.judge.bits(LOBE, energies, material.energies)?;
-        self.judge.bits(LOBE, nothing, 0)
+        self.write_number(LOBE, [slot::LOBE, 0], expected, 0.0)?;
+        self.write_number(LOBE, [slot::LOBE, 1], material.alpha, 0.0)?;
+        self.write_bits(LOBE, [slot::LOBE, 2], material.energies)?;
+        self.write_bits(LOBE, [slot::LOBE, 3], 0)
     }
 }

@@ -146,7 +146,7 @@ impl WrittenPicture<'_> {
         Some((channel, [found[channel], exact[channel]]))
     }
 
-    pub(super) fn at(&self, index: usize) -> [f64; 4] {
+    pub(in crate::verify) fn at(&self, index: usize) -> [f64; 4] {
         let mut found = [0.0; 4];
         match self.samples {
             Samples::Linear(samples) => found = samples[index].map(f64::from),
@@ -207,6 +207,23 @@ impl WrittenPicture<'_> {
         LegalSample(channels)
     }
 
+    /// Judges a pixel by the light that it may have: whether the interval decides something, or the first channel that
+    /// is not legal, with its legal samples.
+    pub(in crate::verify) fn judge_light(&self, index: usize, color: [Interval; 3]) -> Result<bool, (usize, [f64; 2])> {
+        // The sample of NaN is zero.
+        if color.iter().any(|c| c.low.is_nan() || c.high.is_nan()) {
+            return Ok(false);
+        }
+        let legal = self.legal(&LegalColor { color, is_hit: true }, false);
+        if let Some(violation) = LegalSample::judge(&[legal], &self.at(index)) {
+            return Err(violation);
+        }
+        // Light in display units; brighter than white is one value.
+        let ends = |low: bool| color.map(|c| to_srgb16([if low { c.low } else { c.high } as f32; 3])[0]);
+        let widths = ends(false).into_iter().zip(ends(true)).map(|(high, low)| high.abs_diff(low));
+        Ok(widths.max() <= Some(WIDEST))
+    }
+
     /// The least and the greatest display light for legal colours.
     fn displayed(&self, legal: &LegalColor) -> [[f32; 3]; 2] {
         let encoding = self.encoding;
@@ -227,6 +244,9 @@ fn is_near(found: f64, exact: f64) -> bool {
     let [[found, ..], [exact, ..]] = [found, exact].map(|light| to_srgb16([light as f32; 3]));
     found.abs_diff(exact) <= 1
 }
+
+/// The widest interval that decides a pixel, in steps of 16 bits: 16 of 8 bits.
+const WIDEST: u16 = 16 * 257;
 
 /// Encodes display light as the writers do. Brighter light never gives a smaller sample.
 fn encode(bits: Bits, light: [f32; 3]) -> [f64; 3] {

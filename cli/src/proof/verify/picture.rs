@@ -35,6 +35,7 @@ struct Report<'a> {
     settings: &'a [[String; 2]],
     exact: usize,
     legal: usize,
+    wide: usize,
     open: usize,
     violated: usize,
     violation: Option<String>,
@@ -73,7 +74,7 @@ pub(crate) fn run(args: &VerifyArgs, path: &Path, scene: &Path) -> Result<(), Fa
     answer(table.as_bytes())?;
     if let Some(json) = &args.json {
         let [width, height] = written.size;
-        let [exact, legal, open, violated] = [0, 1, 2, 3].map(|index| judged.count(PixelVerdict::ALL[index]));
+        let [exact, legal, wide, open, violated] = [0, 1, 2, 3, 4].map(|index| judged.count(PixelVerdict::ALL[index]));
         let report = Report {
             version: env!("CARGO_PKG_VERSION"),
             picture: path.display().to_string(),
@@ -83,6 +84,7 @@ pub(crate) fn run(args: &VerifyArgs, path: &Path, scene: &Path) -> Result<(), Fa
             settings: &certificate.settings,
             exact,
             legal,
+            wide,
             open,
             violated,
             violation: judged.violations.first().map(ToString::to_string),

@@ -1,0 +1,248 @@
+//! The finished light that a conforming device may have in a picture of a studio: after noise is removed and lines are
+//! drawn, which read the light and the hits of neighbours.
+
+use glam::DVec3;
+
+use crate::image::NO_ID;
+use crate::image::outline::{self, Outline};
+use crate::parallel::{map_parts, ranges};
+use crate::recording::pixel_at;
+use crate::verify::certificate::CHUNK;
+use crate::verify::denoised::{LegalGuide, Light, filtered, product};
+use crate::verify::hit::LegalHits;
+use crate::verify::lit::check::LitCheck;
+use crate::verify::rounding::{DIVIDE, FLUSH, Interval, PAD, U, gamma};
+use crate::verify::sphere::LegalNormals;
+use crate::verify::studio::forward::PixelLight;
+
+/// The smallest albedo by which light is divided before noise is removed.
+const LEAST_ALBEDO: f64 = 0.01_f32 as f64;
+
+/// Light about which nothing is known.
+const ANY_LIGHT: Interval = Interval { low: 0.0, high: 1e6 };
+
+/// What the ray through the centre of a pixel hits, if there is a single legal answer.
+#[derive(Clone, Copy, Debug)]
+struct Spot {
+    /// Id of the sphere; `NO_ID` for a miss.
+    id: u32,
+    depth: Interval,
+    normal: DVec3,
+    normal_error: f64,
+}
+
+impl LitCheck<'_> {
+    /// The finished light of some pixels, by their indices; `None` for a pixel about which hardly anything is known.
+    pub(crate) fn finished_light(&self, indices: &[usize]) -> Vec<Option<[Interval; 3]>> {
+        let size = self.inputs.size;
+        let count = size[0] as usize * size[1] as usize;
+        let settings = &self.inputs.settings;
+        let lines = settings.studio_parameters().and_then(|studio| studio.outline);
+        let is_denoised = settings.sampling.denoise;
+        let spots = if is_denoised || lines.is_some() { self.spots(count) } else { Vec::new() };
+        let mut light: Vec<Option<[Interval; 3]>> = if is_denoised {
+            let lights = self.all_pixels(count, |pixel, hits| self.legal_pixel(pixel, hits));
+            let quiet = without_noise(size, &lights, &spots);
+            indices.iter().map(|index| Some(quiet[*index])).collect()
+        } else {
+            let parts = map_parts(ranges(indices.len(), 16), |range| {
+                let mut hits = LegalHits::default();
+                let light = |at: usize| self.legal_pixel(pixel_at(indices[at], size[0]), &mut hits);
+                range.map(light).map(|light| light.map(|light| light.color)).collect::<Vec<_>>()
+            });
+            parts.concat()
+        };
+        if let Some(lines) = lines {
+            let covered = covered(size, &spots, &lines);
+            for (light, index) in light.iter_mut().zip(indices) {
+                *light = light.map(|light| mixed(light, covered[*index], &lines));
+            }
+        }
+        light
+    }
+
+    fn all_pixels<T: Send + Clone>(&self, count: usize, find: impl Fn([u32; 2], &mut LegalHits) -> T + Sync) -> Vec<T> {
+        let parts = map_parts(ranges(count, CHUNK), |range| {
+            let mut hits = LegalHits::default();
+            range.map(|index| find(pixel_at(index, self.inputs.size[0]), &mut hits)).collect::<Vec<T>>()
+        });
+        parts.concat()
+    }
+
+    fn spots(&self, count: usize) -> Vec<Option<Spot>> {
+        self.all_pixels(count, |pixel, hits| self.spot(pixel, hits))
+    }
+
+    fn spot(&self, pixel: [u32; 2], hits: &mut LegalHits) -> Option<Spot> {
+        let mut ray = self.model.ray(pixel).any(&self.model);
+        let moved = PAD * self.moved(ray.line.origin);
+        ray.slack.across += moved;
+        ray.slack.along += moved;
+        hits.clear();
+        if ray.may_hit_box {
+            hits.find_nearer(&self.checker.candidates, &ray.line, ray.slack, |_| false);
+            hits.miss |= ray.may_miss_box;
+        }
+        match (&hits.spheres[..], hits.miss) {
+            ([], true) => Some(Spot {
+                id: NO_ID,
+                depth: Interval { low: 0.0, high: 0.0 },
+                normal: DVec3::ZERO,
+                normal_error: 0.0,
+            }),
+            ([hit], false) => {
+                let ((None, Some(side)) | (Some(side), None)) = (hit.near, hit.far) else { return None };
+                let normals = LegalNormals::new(&ray.line, self.checker.scene.spheres()[hit.id as usize], ray.slack);
+                let (normal, normal_error) = normals.only()?;
+                let Interval { low, high } = ray.depths(side);
+                let depth = Interval { low: low - moved, high: high + moved };
+                Some(Spot { id: hit.id, depth, normal, normal_error })
+            }
+            _ => None,
+        }
+    }
+}
+
+/// The numbers by which the light of a pixel is divided, which are its albedo, except where that is black.
+fn divisors(PixelLight { color, albedo, .. }: &PixelLight) -> [Interval; 3] {
+    let has_color = albedo.iter().any(|c| c.low >= LEAST_ALBEDO);
+    let may_have_color = albedo.iter().any(|c| c.high >= LEAST_ALBEDO);
+    [0, 1, 2].map(|channel| {
+        let (albedo, color) = (albedo[channel], color[channel]);
+        let own =
+            (albedo.high >= LEAST_ALBEDO).then_some(Interval { low: albedo.low.max(LEAST_ALBEDO), high: albedo.high });
+        let is_dark = albedo.low < LEAST_ALBEDO;
+        let least = (is_dark && may_have_color && color.low < LEAST_ALBEDO)
+            .then_some(Interval { low: LEAST_ALBEDO, high: LEAST_ALBEDO });
+        let one = (is_dark && (!has_color || color.high >= LEAST_ALBEDO)).then_some(Interval { low: 1.0, high: 1.0 });
+        let all = [own, least, one].into_iter().flatten().reduce(Interval::union);
+        all.unwrap_or(Interval { low: LEAST_ALBEDO, high: 1.0 })
+    })
+}
+
+/// The light of all pixels after noise was removed.
+fn without_noise(size: [u32; 2], lights: &[Option<PixelLight>], spots: &[Option<Spot>]) -> Vec<[Interval; 3]> {
+    let luminance = |color: [f64; 3]| (0..3).map(|i| crate::image::color::LUMINANCE[i] * color[i]).sum::<f64>();
+    let (mut guides, mut divided) = (Vec::with_capacity(spots.len()), Vec::with_capacity(spots.len()));
+    for (light, spot) in lights.iter().zip(spots) {
+        let unknown = PixelLight {
+            color: [ANY_LIGHT; 3],
+            albedo: [Interval { low: 0.0, high: 1.0 + 4.0 * U }; 3],
+            variance: ANY_LIGHT,
+        };
+        let light = light.as_ref().unwrap_or(&unknown);
+        let albedo = divisors(light);
+        let off = PAD * (DIVIDE + 2.0 * U);
+        let quotient = |i: usize| {
+            let (light, albedo) = (light.color[i], albedo[i]);
+            let low = light.low / if light.low < 0.0 { albedo.low } else { albedo.high };
+            let high = light.high / if light.high < 0.0 { albedo.high } else { albedo.low };
+            Interval { low: low - off * low.abs() - FLUSH, high: high + off * high.abs() + FLUSH }
+        };
+        let [least, most] = [albedo.map(|c| c.low), albedo.map(|c| c.high)].map(luminance);
+        let relative = PAD * (gamma(10) + DIVIDE);
+        let variance = Interval {
+            low: light.variance.low / (most * most) * (1.0 - relative),
+            high: light.variance.high / (least * least) * (1.0 + relative) + FLUSH,
+        };
+        divided.push([quotient(0), quotient(1), quotient(2), variance] as Light);
+        let depth = spot.map_or(Interval { low: 0.0, high: 0.0 }, |spot| spot.depth);
+        let middle = 0.5 * (depth.low + depth.high);
+        let DVec3 { x, y, z } = spot.map_or(DVec3::ZERO, |spot| spot.normal);
+        guides.push(LegalGuide {
+            shape: [x, y, z, middle],
+            errors: [spot.map_or(0.0, |spot| spot.normal_error), PAD * (depth.high - middle) + U * middle],
+            is_miss: spot.map(|spot| spot.id == NO_ID),
+            albedo,
+        });
+    }
+    let quiet = filtered(&guides, size, divided);
+    let color = |(light, guide): (&Light, &LegalGuide)| [0, 1, 2].map(|i| product(light[i], guide.albedo[i]));
+    quiet.iter().zip(&guides).map(color).collect()
+}
+
+/// The least and the greatest strength of the line between two pixels; `None` if it is not known whether there is one.
+fn strengths(a: Option<Spot>, b: Option<Spot>, outline: &Outline) -> Option<[f64; 2]> {
+    let (a, b) = (a?, b?);
+    if a.id == b.id {
+        return Some([0.0; 2]);
+    }
+    if a.id == NO_ID || b.id == NO_ID {
+        return Some([1.0; 2]);
+    }
+    let cosine = a.normal.dot(b.normal);
+    let error = 1.01 * (a.normal_error + b.normal_error) + 8.0 * U;
+    let sharp = f64::from(outline.angle.cos());
+    if cosine + error < sharp {
+        return Some([1.0; 2]);
+    }
+    let jump = Interval {
+        low: (a.depth.low - b.depth.high).max(b.depth.low - a.depth.high).max(0.0),
+        high: (a.depth.high - b.depth.low).max(b.depth.high - a.depth.low),
+    };
+    let least =
+        [a.depth.low.min(b.depth.low), a.depth.high.min(b.depth.high)].map(|depth| f64::from(outline.depth) * depth);
+    let relative = 16.0 * U;
+    let strength = |jump: f64, least: f64| {
+        if jump > least { ((jump - least) / (0.5 * least)).clamp(0.0, 1.0) } else { 0.0 }
+    };
+    let low = strength(jump.low * (1.0 - relative), least[1] * (1.0 + relative)) * (1.0 - relative);
+    let high = (strength(jump.high * (1.0 + relative), least[0] * (1.0 - relative)) * (1.0 + relative)).min(1.0);
+    if low <= 0.0 && high > 0.0 {
+        return None;
+    }
+    let may_be_sharp = cosine - error < sharp;
+    match (may_be_sharp, low > 0.0) {
+        (true, true) => Some([low, 1.0]),
+        (true, false) => None,
+        (false, _) => Some([low, high]),
+    }
+}
+
+/// The least and the greatest fraction of each pixel that lines cover: 0 and 1 near an edge of which nothing is known.
+fn covered(size: [u32; 2], spots: &[Option<Spot>], outline: &Outline) -> Vec<[f64; 2]> {
+    let [width, height] = size.map(|side| side as usize);
+    let of_edge = |a: usize, b: usize| strengths(spots[a], spots[b], outline);
+    let share = |which: usize| {
+        outline::coverage_by([width, height], outline.width, |a, b| {
+            let strength = of_edge(a, b).map_or(0.0, |both| both[which]);
+            let near = strength as f32;
+            match which {
+                0 if f64::from(near) > strength => near.next_down(),
+                1 if f64::from(near) < strength => near.next_up(),
+                _ => near,
+            }
+        })
+    };
+    let (low, high) = (share(0), share(1));
+    let off = 8.0 * U;
+    let mut covered: Vec<[f64; 2]> = low
+        .iter()
+        .zip(&high)
+        .map(|(low, high)| [f64::from(*low) * (1.0 - off), (f64::from(*high) * (1.0 + off)).min(1.0)])
+        .collect();
+    let halo = outline::halo(outline.width) + 1;
+    for index in 0..spots.len() {
+        let [i, j] = [index % width, index / width];
+        let is_open = |other: usize| of_edge(index, other).is_none();
+        if (i + 1 < width && is_open(index + 1)) || (j + 1 < height && is_open(index + width)) {
+            for row in j.saturating_sub(halo)..(j + halo + 1).min(height) {
+                covered[row * width + i.saturating_sub(halo)..row * width + (i + halo + 1).min(width)].fill([0.0, 1.0]);
+            }
+        }
+    }
+    covered
+}
+
+/// Light over which a line is drawn.
+fn mixed(light: [Interval; 3], share: [f64; 2], outline: &Outline) -> [Interval; 3] {
+    let line = outline.color.to_array().map(f64::from);
+    [0, 1, 2].map(|channel| {
+        let over = |light: f64, share: f64| light + share * (line[channel] - light);
+        let Interval { low, high } = light[channel];
+        let least = over(low, share[0]).min(over(low, share[1]));
+        let most = over(high, share[0]).max(over(high, share[1]));
+        let error = 4.0 * U * (high.abs() + low.abs() + line[channel]) + FLUSH;
+        Interval { low: least - error, high: most + error }
+    })
+}
