@@ -15,7 +15,7 @@ use crate::recording::pixel_at;
 use crate::render::RenderSettings;
 use crate::verify::lit::check::LitCheck;
 use crate::verify::studio::forward;
-use crate::verify::{Checker, Verdict};
+use crate::verify::{Checker, Interval, Verdict};
 
 /// The least share of exact pixels in a picture that is proved.
 pub const LEAST_EXACT: f64 = 0.99;
@@ -112,6 +112,22 @@ impl FinishedCertificate {
 }
 
 impl Checker<'_> {
+    /// The light that a conforming device may have for some pixels of a finished picture of a studio, given by their
+    /// indices row by row from the top: red, green and blue. `None` if hardly anything is known, as in pictures that are
+    /// not studios, or have translucent spheres.
+    #[must_use]
+    pub fn legal_light(
+        &self,
+        view: &View<'_>,
+        settings: &RenderSettings,
+        indices: &[usize],
+    ) -> Vec<Option<[Interval; 3]>> {
+        match forward::inputs(self, view, settings).filter(|_| !indices.is_empty()) {
+            Some(inputs) => LitCheck::new(self, &inputs).finished_light(indices),
+            None => vec![None; indices.len()],
+        }
+    }
+
     /// Judges every pixel of a finished picture. `exact` is the picture of the CPU reference with the same settings,
     /// finished and encoded by the same code. `is_annotated` says whether something is drawn over both.
     ///
@@ -137,11 +153,7 @@ impl Checker<'_> {
             range.filter(|index| picture.difference(exact, *index).is_some()).collect::<Vec<usize>>()
         });
         let differ = parts.concat();
-        let studio = (is_plain && !differ.is_empty()).then(|| forward::inputs(self, view, settings)).flatten();
-        let lights = match &studio {
-            Some(inputs) => LitCheck::new(self, inputs).finished_light(&differ),
-            None => vec![None; differ.len()],
-        };
+        let lights = if is_plain { self.legal_light(view, settings, &differ) } else { vec![None; differ.len()] };
         let mut all =
             FinishedCertificate { verdicts: vec![PixelVerdict::Exact; count], ..FinishedCertificate::default() };
         for (index, light) in differ.into_iter().zip(lights) {

@@ -3,10 +3,11 @@
 use libtest_mimic::{Failed, Trial};
 use pinhole::gpu::{Headless, Wait};
 use pinhole::image::encoding::Bits;
-use pinhole::verify::finished::{LEAST_EXACT, PixelVerdict};
+use pinhole::render::Outline;
+use pinhole::verify::finished::{FinishedCertificate, LEAST_EXACT, PixelVerdict};
 use pinhole::verify::written::{Samples, WrittenCertificate, WrittenPicture};
-use pinhole::verify::{Checker, Outcome};
-use pinhole::{Encoding, Image, LayerSet, cpu};
+use pinhole::verify::{Checker, Interval, Outcome};
+use pinhole::{Encoding, Image, Integrator, LayerSet, cpu};
 use pinhole_figure::write::png;
 
 use crate::planted::{self, Fault, named, planted};
@@ -38,10 +39,7 @@ pub(crate) fn trials() -> Vec<Trial> {
         trials.push(Trial::test(format!("written::legal::{name}"), move || legal(&view)));
     }
     for (name, view) in share(lit_scenes::all()) {
-        trials.push(Trial::test(format!("written::exact::{name}"), move || {
-            let share = exact_share(headless()?, &view)?;
-            if share >= LEAST_EXACT { Ok(()) } else { Err(format!("only {share} of the pixels are exact").into()) }
-        }));
+        trials.push(Trial::test(format!("written::exact::{name}"), move || exact(headless()?, &view)));
     }
     let is_seen = |fault: &Fault| is_visible(fault.name);
     let is_of_color = |fault: &Fault| {
@@ -89,14 +87,65 @@ fn is_found(device: &Headless, view: &View) -> Result<(), Failed> {
     }
 }
 
-/// The share of pixels that are what the reference computes with the same random numbers.
-fn exact_share(device: &Headless, view: &View) -> Result<f64, Failed> {
+/// Judges finished pictures of light in samples of 8 and of 16 bits, and in linear light. If `is_finished`, noise is
+/// removed and lines are drawn.
+pub(crate) fn finished(device: &Headless, view: &View, is_finished: bool) -> Result<[FinishedCertificate; 3], Failed> {
     let View { scene, settings, .. } = view;
-    let found = device.render(scene, &view.seen(), settings, LayerSet::COLOR).wait()?;
-    let exact = cpu::render(scene, &view.seen(), settings, LayerSet::COLOR)?;
-    let (size, encoding) = ([found.width(), found.height()], &Encoding::default());
-    let bytes = [png::samples(&found, encoding)?, png::samples(&exact, encoding)?];
-    let pictures = bytes.each_ref().map(|bytes| WrittenPicture { size, samples: Samples::Encoded(bytes), encoding });
-    let judged = Checker::new(scene)?.certify_finished(&view.seen(), settings, pictures.each_ref(), false)?;
-    Ok(judged.count(PixelVerdict::Exact) as f64 / judged.verdicts.len() as f64)
+    let mut settings = settings.clone();
+    if let (true, Integrator::Studio(studio)) = (is_finished, &mut settings.integrator) {
+        settings.sampling.denoise = true;
+        studio.outline = Some(Outline::default());
+    }
+    let found = device.render(scene, &view.seen(), &settings, LayerSet::COLOR).wait()?;
+    let exact = cpu::render(scene, &view.seen(), &settings, LayerSet::COLOR)?;
+    let checker = Checker::new(scene)?;
+    let images = [&found, &exact];
+    let all: Vec<usize> = (0..found.color().len()).collect();
+    for (index, legal) in checker.legal_light(&view.seen(), &settings, &all).into_iter().enumerate() {
+        for (image, name) in images.into_iter().zip(["the device", "the reference"]) {
+            let color = image.color()[index];
+            let is_legal = |legal: &[Interval; 3]| legal.iter().zip(color).all(|(legal, c)| legal.contains(c.into()));
+            if legal.is_some_and(|legal| !is_legal(&legal)) {
+                return Err(format!("pixel {index} of {name}: {color:?}; legal is {legal:?}").into());
+            }
+        }
+    }
+    let light = images.map(|image| image.color().iter().map(|[r, g, b]| [*r, *g, *b, 1.0]).collect::<Vec<_>>());
+    let judged = |bits: Option<Bits>| -> Result<FinishedCertificate, Failed> {
+        let mut encoding = Encoding::default();
+        encoding.bits = bits.unwrap_or(Bits::Eight);
+        let bytes = [png::samples(images[0], &encoding)?, png::samples(images[1], &encoding)?];
+        let samples = |which: usize| match bits {
+            Some(_) => Samples::Encoded(&bytes[which]),
+            None => Samples::Linear(&light[which]),
+        };
+        let size = [found.width(), found.height()];
+        let pictures = [0, 1].map(|which| WrittenPicture { size, samples: samples(which), encoding: &encoding });
+        Ok(checker.certify_finished(&view.seen(), &settings, pictures.each_ref(), false)?)
+    };
+    Ok([judged(Some(Bits::Eight))?, judged(Some(Bits::Sixteen))?, judged(None)?])
+}
+
+/// Asserts that no pixel of finished pictures is violated.
+pub(crate) fn none_violated(judged: &[FinishedCertificate]) -> Result<(), Failed> {
+    for certificate in judged {
+        println!("{:?}", PixelVerdict::ALL.iter().map(|verdict| certificate.count(*verdict)).collect::<Vec<_>>());
+    }
+    match judged.iter().flat_map(|certificate| &certificate.violations).next() {
+        None => Ok(()),
+        Some(first) => Err(first.to_string().into()),
+    }
+}
+
+/// Judges pictures of this device. Almost all pixels are exact.
+fn exact(device: &Headless, view: &View) -> Result<(), Failed> {
+    for is_finished in [false, true] {
+        let judged = finished(device, view, is_finished)?;
+        none_violated(&judged)?;
+        let share = judged[0].count(PixelVerdict::Exact) as f64 / judged[0].verdicts.len() as f64;
+        if share < LEAST_EXACT {
+            return Err(format!("only {share} of the pixels are exact").into());
+        }
+    }
+    Ok(())
 }

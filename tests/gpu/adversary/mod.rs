@@ -16,8 +16,9 @@ use pinhole::{Film, LinearRgb, RenderSettings, Scene, View};
 use crate::any_rounding::{Adversary, Rounding};
 use crate::pictures::go_on;
 use crate::planted::{Fault, planted};
-use crate::support::effort::tries;
+use crate::support::effort::{share, tries};
 use crate::support::{random_light, spheres};
+use crate::written::{finished, none_violated};
 use crate::{headless, lit_scenes, planted, scenes, support};
 
 /// Number of random lit scenes, and of random studios, if all run.
@@ -70,6 +71,16 @@ pub(crate) fn trials() -> Vec<Trial> {
         trials.push(Trial::test(format!("adversary::{name}"), move || {
             let certificate = certify_lit(&LIT, &view())?;
             not_accused(certificate.outcome(), &certificate)
+        }));
+    }
+    let studios = lit_views().into_iter().filter(|(name, _)| name.contains("studio"));
+    for (name, view) in share(studios) {
+        trials.push(Trial::test(format!("adversary::finished::{name}"), move || {
+            let view = view();
+            for is_finished in [false, true] {
+                none_violated(&finished(LIT.as_ref()?, &view, is_finished)?)?;
+            }
+            Ok(())
         }));
     }
     trials.push(Trial::test("adversary::sixty_ulp_are_found", found));
