@@ -3,9 +3,11 @@
 //! The random numbers of a picture follow from its seed. So the f64 reference takes the very samples of the device, and
 //! the same code finishes both: it removes noise, draws lines and annotations, and encodes. What rounding changes within
 //! a pixel is mostly less than a step of the file, so that almost every pixel of a correct device *equals* the exact
-//! one. Where a ray passes an edge, rounding may decide otherwise, and a pixel differs. Such a pixel is legal if an
-//! interval of legal samples contains it ([`written`](super::written), for one ray through each pixel without lines and
-//! annotations). For other pictures there are no intervals: a pixel that differs stays open, and the picture undecided.
+//! one. Where a ray passes an edge, rounding may decide otherwise, and a pixel differs. Such a pixel is judged by an
+//! interval: in pictures with one ray through each pixel, by [`written`](super::written), and in studios of opaque
+//! spheres by following all samples forward, with every branch that rounding may take, and through the removal of noise
+//! and the lines (`studio/forward.rs`, `studio/legal_picture.rs`). For other pictures there are no intervals: a pixel
+//! that differs stays open, and the picture undecided.
 
 use super::certificate::{CHUNK, KEPT, Outcome, channel_name};
 use super::written::{WrittenError, WrittenPicture, WrittenViolation};
