@@ -80,17 +80,17 @@ fn a_lit_picture_is_checked_by_means() {
     assert!(line(&run, "rendered by").contains("--samples=24"));
     // Changed samples with a certificate to match are found by their means.
     folder.run(&format!("render data.csv -o b.png --certify {flags} --exposure 0.4")).succeeded();
-    let forged = with_text(&folder.read("b.png"), |text| forged(text, "--exposure=0.4"));
+    let forged = with_text(&folder.read("b.png"), |text| forged(text, "--exposure=0.4", ""));
     std::fs::write(folder.path("b.png"), forged).unwrap();
     folder.refuses("verify b.png --scene data.csv", 3, "the picture is not legal: ");
 }
 
-/// A certificate that lacks an argument, with a digest that matches again.
-fn forged(text: &str, argument: &str) -> String {
+/// A certificate that has other lines in the place of an argument, with a digest that matches again.
+fn forged(text: &str, argument: &str, other: &str) -> String {
     use sha2::{Digest, Sha256};
     let line = format!("argument {argument}\n");
     assert!(text.contains(&line), "{text}");
-    let text = text.replace(&line, "");
+    let text = text.replace(&line, other);
     let before = &text[..text.rfind("sha256 ").unwrap()];
     let digest = Sha256::digest(before.as_bytes());
     let digits: String = digest.iter().map(|byte| format!("{byte:02x}")).collect();
@@ -112,7 +112,7 @@ fn what_was_changed_is_refused() {
     let other = with_text(&a, |_| certificate(&b));
     let edited = with_text(&a, |text| text.replace("outcome proved", "outcome Proved"));
     let newer = with_text(&a, |text| text.replace("pinhole-certificate 1", "pinhole-certificate 9"));
-    let unknown = with_text(&b, |text| forged(text, "--exposure=0.4"));
+    let unknown = with_text(&b, |text| forged(text, "--exposure=0.4", ""));
     for (name, bytes) in
         [("other.png", other), ("edited.png", edited), ("newer.png", newer), ("cut.png", a[..a.len() / 2].to_vec())]
     {
@@ -135,4 +135,15 @@ fn what_was_changed_is_refused() {
     // A forged certificate names another exposure, with which the samples would differ.
     std::fs::write(folder.path("forged.png"), unknown).unwrap();
     folder.refuses("verify forged.png --scene scene.toml", 3, "the picture is not legal: ");
+    // Nothing in it reaches the terminal as it is.
+    let evil = "argument --tone=\u{1b}]0;evil\u{7}\u{9b}2J\n";
+    for evil in [evil.to_owned(), evil.replace("--tone=", "--label=")] {
+        let evil = with_text(&b, |text| forged(text, "--exposure=0.4", &evil));
+        std::fs::write(folder.path("evil.png"), evil).unwrap();
+        let run = folder.run("verify evil.png --scene scene.toml --json a.json");
+        let said = [&run.stdout[..], run.stderr.as_bytes()].concat();
+        let said =
+            String::from_utf8(said).unwrap() + &std::fs::read_to_string(folder.path("a.json")).unwrap_or_default();
+        assert!(run.code != 0 && said.lines().all(|line| !line.contains(char::is_control)), "{said:?}");
+    }
 }

@@ -16,8 +16,10 @@ use crate::proof::verify::report::command_line;
 use crate::render::Job;
 use crate::terminal::failure::Failure;
 use crate::terminal::progress::{self, answer};
+use crate::terminal::text::{self, in_quotes};
 use crate::terminal::threads;
 use pinhole::image::encoding::Encoding;
+use pinhole::internals::text::{one_line, whole_line};
 use pinhole::verify::Outcome;
 use pinhole::verify::picture_certificate::PictureCertificate;
 use pinhole_figure::read::picture::{self, FileSamples};
@@ -73,7 +75,7 @@ pub(crate) fn run(args: &VerifyArgs, path: &Path, scene: &Path) -> Result<(), Fa
             picture: path.display().to_string(),
             width,
             height,
-            adapter: &certificate.adapter,
+            adapter: &one_line(&certificate.adapter),
             samples_per_pixel: written.per_pixel,
             judged_by: judged.by().name(),
             proved,
@@ -83,7 +85,7 @@ pub(crate) fn run(args: &VerifyArgs, path: &Path, scene: &Path) -> Result<(), Fa
             outcome: judged.outcome(),
             command: command_line(),
         };
-        let text = serde_json::to_string_pretty(&report).context("the report cannot be written as JSON")? + "\n";
+        let text = text::json(&report)?;
         name_all(vec![(json, unnamed(json, text.as_bytes())?)])?;
     }
     judged.verdict()
@@ -118,8 +120,8 @@ fn job(
         FileSamples::Linear(_) => PictureFormat::Exr,
     };
     let job = Job::with_outputs(&args, Outputs::unwritten(format))?;
-    let flags = certificate.arguments.join(" ");
-    Ok((job, format!("pinhole render {} {flags}", scene.display()).trim_end().to_owned()))
+    let flags = certificate.arguments.iter().map(|word| in_quotes(word)).collect::<Vec<_>>().join(" ");
+    Ok((job, whole_line(&format!("pinhole render {} {}", in_quotes(&scene.to_string_lossy()), one_line(&flags)))))
 }
 
 /// Refuses a picture whose samples have another kind than the arguments imply.
