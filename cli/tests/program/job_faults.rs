@@ -177,6 +177,8 @@ fn set_device(folder: &Folder, unit: usize, device: &str) {
 fn parts_of_different_devices_are_merged_only_if_that_is_allowed() {
     let folder = folder();
     through_parts(&folder, SPLIT, "-o good%d.png");
+    set_device(&folder, 3, "\u{1b}]0;evil\u{7}\u{9b}2J\u{202e}");
+    folder.run("job merge job -o m%d.png").refused(1, r"\u{1b}]0;evil\u{7}\u{9b}2J\u{202e} 3");
     set_device(&folder, 3, "Another GPU (driver 1.2)");
     let run = folder.run("job merge job -o m%d.png");
     run.refused(1, "Another GPU (driver 1.2) 3, CPU (");
@@ -184,6 +186,69 @@ fn parts_of_different_devices_are_merged_only_if_that_is_allowed() {
     assert!(!folder.path("m0.png").exists());
     folder.run("job merge job -o m%d.png --allow-mixed-adapters -q").succeeded();
     assert!(folder.read("m0.png") == folder.read("good0.png"));
+}
+
+/// The folder of a job may be that of a stranger.
+#[test]
+fn no_link_in_the_folder_of_a_job_is_followed() {
+    let folder = folder();
+    split_frames(&folder);
+    folder.run("job part job 1 -q").succeeded();
+    fs::write(folder.path("bashrc"), "mine").unwrap();
+    let is_refused = |words: &str| {
+        for command in ["part job 0-3 -q", "status job --missing", "merge job -o m%d.png"] {
+            folder.refuses(&format!("job {command}"), 1, words);
+        }
+        assert_eq!(folder.read("bashrc"), b"mine");
+    };
+    let words = "this is a link or not a regular file, which the folder of a job must not have";
+    // A link to a file that is there, and to one that is not yet.
+    for (name, target) in [
+        ("parts/000000.part", "bashrc"),
+        ("parts/000000.part", "profile"),
+        ("parts/.pinhole-job-0.png", "bashrc"),
+        ("parts/000003.part", "job/parts/000001.part"),
+    ] {
+        std::os::unix::fs::symlink(folder.path(target), folder.path("job").join(name)).unwrap();
+        is_refused(&format!("{name}: {words}; remove it"));
+        fs::remove_file(folder.path("job").join(name)).unwrap();
+    }
+    assert!(std::process::Command::new("mkfifo").arg(part(&folder, 0)).status().unwrap().success());
+    is_refused(words);
+    fs::remove_file(part(&folder, 0)).unwrap();
+    for name in ["parts", "job.json", "overview.bin"] {
+        let (there, elsewhere) = (folder.path("job").join(name), folder.path("elsewhere"));
+        if there.exists() {
+            fs::rename(&there, &elsewhere).unwrap();
+            std::os::unix::fs::symlink(&elsewhere, &there).unwrap();
+            if name == "overview.bin" {
+                folder.refuses("job part job 0 -q", 1, words);
+            } else {
+                is_refused("this is a link or not a");
+            }
+            fs::remove_file(&there).unwrap();
+            fs::rename(&elsewhere, &there).unwrap();
+        }
+    }
+    // An input that became a pipe is not waited for.
+    fs::remove_file(folder.path("a.xyz")).unwrap();
+    assert!(std::process::Command::new("mkfifo").arg(folder.path("a.xyz")).status().unwrap().success());
+    folder.refuses("job part job 0 -q", 1, "a.xyz: cannot be read: this is not a regular file");
+}
+
+/// What a name could do to a script that has it is refused, and a hint can be copied.
+#[test]
+fn names_of_jobs_are_no_commands() {
+    let folder = folder();
+    let split = |job: &str| folder.command("job split a.xyz --backend cpu -o").arg(job).output().unwrap();
+    for name in ["K\ntouch PWNED1\n", "a\rb", "a\u{1b}]0;x\u{7}", "a\u{9b}2J", "a\u{202e}b"] {
+        let output = split(name);
+        assert_eq!(output.status.code(), Some(2));
+        let said = String::from_utf8(output.stderr).unwrap();
+        assert!(said.contains(": this name has control characters, ") && said.lines().count() == 1, "{said}");
+    }
+    let said = String::from_utf8(split("K;touch PWNED2").stderr).unwrap();
+    assert!(said.ends_with("render them with `pinhole job part 'K;touch PWNED2' 0-0`\n"), "{said}");
 }
 
 /// A stand-in for `sbatch` that logs its arguments and runs the script at once, once for each task of an array.
