@@ -1,16 +1,10 @@
 //! Fits text from files into one-line messages.
 
-/// The most characters of a text from a file that are shown: names, labels, quoted lines and devices.
-const LONGEST_TEXT: usize = 200;
-
-/// The most characters of a line of the program, which may quote several texts and paths.
-const LONGEST_LINE: usize = 10_000;
-
 /// A text that came from a file as it may be shown in a terminal, in JSON, on a page and in an error: on one line, with
 /// control characters escaped, and with an ellipsis after 200 characters.
 #[must_use]
 pub fn one_line(text: &str) -> String {
-    fitted(text, LONGEST_TEXT)
+    fitted(text, 200)
 }
 
 /// The same with an ellipsis after 40 characters, for a word within a sentence.
@@ -19,10 +13,10 @@ pub fn shortened(text: &str) -> String {
     fitted(text, 40)
 }
 
-/// The same for a whole line of the program, of at most 10,000 characters.
+/// The same for a whole line of the program, which may quote several texts and paths: at most 10,000 characters.
 #[must_use]
 pub fn whole_line(text: &str) -> String {
-    fitted(text, LONGEST_LINE)
+    fitted(text, 10_000)
 }
 
 /// Whether a character can change how a terminal or a browser shows the text around it: a control character of the

@@ -49,19 +49,16 @@ pub(super) fn read(path: &Path) -> Result<Vec<u8>> {
 /// Refuses the folder of parts if it is a link, or has links or anything else than files.
 pub(super) fn check_no_links(parts: &Path) -> Result<()> {
     let is_folder = parts.symlink_metadata().map_or(true, |found| found.is_dir());
-    ensure!(
-        is_folder,
-        "{}: this is a link or not a folder, and jobs of strangers may not lead elsewhere; remove it",
-        parts.display()
-    );
+    ensure!(is_folder, "{}: {LINK}; remove it", parts.display());
     for entry in fs::read_dir(parts).into_iter().flatten().flatten() {
-        let is_file = entry.file_type().is_ok_and(|kind| kind.is_file());
+        // A file that another process has renamed meanwhile has no type.
+        let is_file = entry.file_type().map_or(true, |kind| kind.is_file());
         ensure!(is_file, "{}: {LINK}; remove it", entry.path().display());
     }
     Ok(())
 }
 
-const LINK: &str = "this is a link or not a regular file, which the folder of a job must not have";
+const LINK: &str = "this is a link or a special file, which the folder of a job must not have";
 
 #[cfg(windows)]
 const FILE_FLAG_OPEN_REPARSE_POINT: u32 = 0x0020_0000;
@@ -122,6 +119,19 @@ mod tests {
     use std::io::Write;
 
     use super::*;
+
+    /// A link that appears after the folder was checked does no harm either.
+    #[test]
+    #[cfg(unix)]
+    fn links_are_neither_read_nor_written_through() {
+        let folder = tempfile::tempdir().unwrap();
+        let [mine, link] = ["mine", "link"].map(|name| folder.path().join(name));
+        fs::write(&mine, "mine").unwrap();
+        std::os::unix::fs::symlink(&mine, &link).unwrap();
+        assert!(read(&link).is_err() && open(folder.path()).is_err());
+        crate::output::files::replace(&link, |file| file.write_all(b"part")).unwrap();
+        assert_eq!((read(&link).unwrap(), read(&mine).unwrap()), (b"part".to_vec(), b"mine".to_vec()));
+    }
 
     #[test]
     fn digests_are_those_of_sha256() {

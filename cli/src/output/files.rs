@@ -79,17 +79,12 @@ pub(crate) fn temporary(path: &Path) -> Result<NamedTempFile> {
 }
 
 fn temporary_in(folder: &Path, path: &Path) -> Result<NamedTempFile> {
-    interrupt::creating(|| temporary_file(folder, path), |file| file.path().to_path_buf())
-}
-
-fn temporary_file(folder: &Path, path: &Path) -> Result<NamedTempFile> {
     let mut builder = tempfile::Builder::new();
     builder.prefix(".pinhole-");
     // The umask applies to these permissions, as for any new file.
     #[cfg(unix)]
     builder.permissions(<Permissions as std::os::unix::fs::PermissionsExt>::from_mode(0o666));
-    builder
-        .tempfile_in(folder)
+    interrupt::creating(|| builder.tempfile_in(folder), |file| file.path().to_path_buf())
         .map_err(|error| without_name(&error))
         .with_context(|| format!("{}: cannot be written", path.display()))
 }

@@ -34,7 +34,7 @@ fn format_of(path: &Path, options: &Options, source: &mut Source) -> Result<&'st
     let first = source.start()?;
     let format = options.format.map_or_else(|| Format::of_file(path, &first), Ok)?;
     format.check(options)?;
-    if source.is_gzip() {
+    if matches!(source, Source::Gzip(_)) {
         format.check_start(&first)?;
     }
     Ok(format)

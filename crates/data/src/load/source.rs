@@ -61,14 +61,9 @@ impl Source {
         Ok(Self::Plain(plain))
     }
 
-    pub(super) fn is_gzip(&self) -> bool {
-        matches!(self, Self::Gzip(_))
-    }
-
     /// Returns the first bytes of the data, and goes back to their start.
     pub(super) fn start(&mut self) -> io::Result<Vec<u8>> {
-        let mut first = Vec::new();
-        self.take(START).read_to_end(&mut first)?;
+        let first = start_of_plain(&mut *self)?;
         self.rewind()?;
         Ok(first)
     }
@@ -144,11 +139,12 @@ pub(super) fn decompressed(bytes: &[u8]) -> io::Result<Vec<u8>> {
 
 /// The first bytes of data that may be compressed.
 pub(super) fn start_of(bytes: &[u8]) -> io::Result<Vec<u8>> {
+    if is_gzip(bytes) { start_of_plain(MultiGzDecoder::new(bytes)) } else { start_of_plain(bytes) }
+}
+
+fn start_of_plain(data: impl Read) -> io::Result<Vec<u8>> {
     let mut first = Vec::new();
-    match is_gzip(bytes) {
-        true => MultiGzDecoder::new(bytes).take(START).read_to_end(&mut first)?,
-        false => bytes.take(START).read_to_end(&mut first)?,
-    };
+    data.take(START).read_to_end(&mut first)?;
     Ok(first)
 }
 
