@@ -42,7 +42,7 @@ pub(crate) fn check_regular(path: &Path) -> Result<()> {
     match path.metadata() {
         Ok(found) if found.is_dir() => bail!("{}: this is a folder; name a file", path.display()),
         Ok(found) if !found.is_file() && !is_standard_input(path) => bail!(
-            "{}: this is not a regular file; copy it to a file, or give - with --format for standard input",
+            "{}: this is not a regular file; copy it to a file, or give data on standard input, with - and --format",
             path.display()
         ),
         _ => Ok(()),

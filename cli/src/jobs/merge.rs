@@ -23,9 +23,6 @@ use pinhole::image::{Image, LayerSet};
 use pinhole::internals::text::{listed, one_line};
 use pinhole::render::NearestPicture;
 
-/// The most devices that an error lists.
-const MOST_DEVICES: usize = 8;
-
 /// The time between two looks for parts that are not visible yet.
 const PAUSE: Duration = Duration::from_millis(200);
 
@@ -138,7 +135,7 @@ impl Devices {
         Err(Failure::Job(anyhow!(
             "noise is removed where parts are merged, and they were rendered by {}, but this is {here}; merge on a \
              machine with that device, or add --allow-mixed-adapters",
-            listed(self.described.iter().map(|device| one_line(device)), MOST_DEVICES)
+            listed(self.described.iter().map(|device| one_line(device)), 8)
         )))
     }
 }
@@ -207,7 +204,7 @@ fn device_of(headers: &[Header], allows_mixed: bool) -> Result<Vec<String>, Fail
         return Err(Failure::Job(anyhow!(
             "parts were rendered by different devices, whose pixels may differ in the last bits: {}; render some of them \
              again, or add --allow-mixed-adapters",
-            listed(words, MOST_DEVICES)
+            listed(words, 8)
         )));
     }
     Ok(devices.into_keys().map(str::to_owned).collect())

@@ -368,42 +368,6 @@ fn inputs_are_not_overwritten() {
     assert_eq!(folder.read("sky.npy"), sky.as_bytes());
 }
 
-/// No input waits for a pipe or reads a device without end.
-#[cfg(unix)]
-#[test]
-fn special_files_are_refused_before_they_are_read() {
-    let sky = format!("integrator = 'path'\n[sky]\nkind = 'image'\nimage = '/dev/zero'\n{SCENE}");
-    let data = "data = '/dev/zero'\nformat = 'csv'\n";
-    let folder = Folder::with(&[("scene.toml", SCENE), ("a.dcd", "CORD"), ("data.toml", data), ("sky.toml", &sky)]);
-    for name in ["pipe.xyz", "pipe.toml", "pipe.npy", "pipe.bricks", "pipe.png"] {
-        assert!(std::process::Command::new("mkfifo").arg(folder.path(name)).status().unwrap().success());
-    }
-    let _socket = std::os::unix::net::UnixListener::bind(folder.path("socket.xyz")).unwrap();
-    for arguments in [
-        "render pipe.xyz -o out.png",
-        "render socket.xyz -o out.png",
-        "render /dev/zero --format csv -o out.png",
-        "render /dev/zero -o out.png",
-        "render pipe.toml -o out.png",
-        "render pipe.bricks -o out.png",
-        "render pipe.xyz --frames : -o %d.png",
-        "render data.toml -o out.png",
-        "render sky.toml -o out.png",
-        "render a.dcd --topology pipe.xyz -o out.png",
-        "render scene.toml --camera-path /dev/zero -o %d.png",
-        "job split pipe.xyz -o job",
-        "info pipe.xyz",
-        "info pipe.bricks",
-        "sort pipe.npy -o out.bricks",
-        "verify pipe.png --scene scene.toml",
-        "verify --replay /dev/zero",
-        "certify scene.toml --id pipe.npy --depth pipe.npy",
-    ] {
-        let backend = if arguments.contains(" -o") && !arguments.starts_with("sort") { " --backend cpu" } else { "" };
-        folder.refuses(&format!("{arguments}{backend}"), 1, "this is not a regular file; copy it to a file");
-    }
-}
-
 #[cfg(unix)]
 #[test]
 fn a_pipe_is_not_replaced_by_a_file() {
