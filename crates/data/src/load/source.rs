@@ -33,7 +33,7 @@ impl<T: BufRead + Seek> Bytes for T {}
 #[derive(Debug)]
 pub(super) enum Source {
     Plain(BufReader<File>),
-    Gzip(BufReader<Gunzip<File>>),
+    Gzip(Box<BufReader<Gunzip<File>>>),
 }
 
 /// Opens a regular file. Others, such as pipes and devices, are refused, because reading them might never end.
@@ -56,7 +56,7 @@ impl Source {
         let mut plain = BufReader::with_capacity(PIECE, open_regular(path)?);
         if is_gzip(plain.fill_buf()?) {
             let gunzip = Gunzip::new(plain.into_inner())?;
-            return Ok(Self::Gzip(BufReader::with_capacity(PIECE, gunzip)));
+            return Ok(Self::Gzip(Box::new(BufReader::with_capacity(PIECE, gunzip))));
         }
         Ok(Self::Plain(plain))
     }
@@ -81,7 +81,7 @@ impl Source {
     fn inner(&mut self) -> &mut dyn Bytes {
         match self {
             Self::Plain(plain) => plain,
-            Self::Gzip(gzip) => gzip,
+            Self::Gzip(gzip) => gzip.as_mut(),
         }
     }
 }
