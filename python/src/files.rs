@@ -45,11 +45,7 @@ impl FileData {
             (options.radius, options.topology) = (radius, topology);
             format.check(&options).map_err(Fault::input)?;
             let fault = |error: LoadError| Fault::reading(&path, &error);
-            let is_regular = PathBuf::from(&path).is_file();
-            let found = (format.has_frames() && is_regular)
-                .then(|| Trajectory::open(&path, &options))
-                .transpose()
-                .map_err(fault)?;
+            let found = format.has_frames().then(|| Trajectory::open(&path, &options)).transpose().map_err(fault)?;
             let count = found.as_ref().map_or(1, Trajectory::len);
             let problem = found.as_ref().and_then(Trajectory::problem).map(ToString::to_string);
             Ok(Self { path, format, options, frames: found.map(Mutex::new), count, problem })

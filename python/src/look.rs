@@ -1,6 +1,8 @@
 //! Makes cameras, settings and encoding for an existing scene from the text of a scene file, which Python writes from
 //! its arguments.
 
+use std::io::Read as _;
+
 use pyo3::prelude::*;
 
 use crate::fault::{Fault, Outcome};
@@ -8,6 +10,7 @@ use pinhole::camera::{Camera, CameraError};
 use pinhole::geometry::bounds::Bounds;
 use pinhole::light::environment::Environment;
 use pinhole::{Encoding, Film, LayerSet, RenderSettings, Scene, View};
+use pinhole_data::load::open_regular;
 use pinhole_figure::annotate::{AnnotationError, Annotations};
 use pinhole_figure::color_by::ColorKey;
 use pinhole_figure::read::environment;
@@ -119,7 +122,9 @@ impl Look {
 
 /// Reads the image of the sky.
 fn environment_of(path: &str) -> Outcome<Environment> {
-    let bytes = std::fs::read(path).map_err(|error| Fault::File(format!("sky: {path}: cannot be read: {error}")))?;
+    let mut bytes = Vec::new();
+    let read = open_regular(path.as_ref()).and_then(|mut file| file.read_to_end(&mut bytes));
+    read.map_err(|error| Fault::File(format!("sky: {path}: cannot be read: {error}")))?;
     environment::read(&bytes).map_err(|error| Fault::Input(format!("sky: {path}: {error}")))
 }
 

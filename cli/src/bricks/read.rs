@@ -13,6 +13,7 @@ use sha2::{Digest, Sha256};
 use crate::bricks::file::{
     BEFORE, DIGEST, Header, LONGEST_HEADER, NAME, PLACE, START, Section, StoredColors, corner, extent,
 };
+use crate::input::read_file;
 use crate::terminal::memory::readable;
 use crate::terminal::text;
 use pinhole::LinearRgb;
@@ -41,7 +42,7 @@ impl BrickFile {
     pub(crate) fn open(path: &Path) -> Result<Arc<Self>> {
         let named = || path.display().to_string();
         let cannot = || format!("{}: cannot be read", path.display());
-        let mut file = File::open(path).with_context(cannot)?;
+        let mut file = read_file::open(path)?;
         let length = file.metadata().with_context(cannot)?.len();
         let mut start = [0; BEFORE as usize];
         let read = file.by_ref().take(BEFORE).read(&mut start).with_context(cannot)?;
@@ -158,7 +159,7 @@ impl BrickFile {
     /// Opens the file at the start of a section.
     fn at(&self, section: &Section) -> Result<File> {
         let cannot = || format!("{}: cannot be read", self.path.display());
-        let mut file = File::open(&self.path).with_context(cannot)?;
+        let mut file = read_file::open(&self.path)?;
         file.seek(SeekFrom::Start(section.offset)).with_context(cannot)?;
         Ok(file)
     }

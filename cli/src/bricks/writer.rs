@@ -9,6 +9,7 @@ use data_encoding::HEXLOWER;
 use sha2::{Digest, Sha256};
 
 use crate::bricks::file::{BEFORE, Brick, COLOR, Header, ID, PLACE, SPHERE, START, Section, bits};
+use crate::input::read_file;
 use pinhole::LinearRgb;
 use pinhole::geometry::bounds::Bounds;
 use pinhole::glam::{DVec3, Vec3};
@@ -82,7 +83,7 @@ impl Stream {
 /// Calls `each` with every row of an array until it returns false.
 fn rows(path: &Path, array: &Array, each: &mut dyn FnMut([f64; 4]) -> Result<bool>) -> Result<()> {
     let cannot = || format!("{}: cannot be read", path.display());
-    let mut file = File::open(path).with_context(cannot)?;
+    let mut file = read_file::open(path)?;
     array.begin(&mut file).with_context(cannot)?;
     let mut piece = vec![0; PIECE * array.row()];
     let mut left = array.count;
@@ -120,10 +121,7 @@ const MAGIC: &[u8] = b"\x93NUMPY";
 impl Array {
     /// Returns the array in a file; `None` if it must be read in another way.
     pub(crate) fn of(path: &Path, format: &Format, radius: Option<f64>) -> Option<Self> {
-        if !path.is_file() {
-            return None;
-        }
-        let mut file = File::open(path).ok()?;
+        let mut file = read_file::open(path).ok()?;
         let length = file.metadata().ok()?.len();
         let array = match format.name {
             "raw-f32x4" => Self { count: length / 16, offset: 0, columns: 4, is_wide: false, radius: 0.0 },

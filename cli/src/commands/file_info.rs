@@ -15,7 +15,7 @@ use crate::terminal::failure::Failure;
 use crate::terminal::progress::answer;
 use crate::terminal::text;
 use pinhole::LinearRgb;
-use pinhole::internals::text::one_line;
+use pinhole::internals::text::{one_line, whole_line};
 use pinhole_data::load::{Column, ColumnValues, Dataset, Format};
 
 /// The file to describe, and how it is read.
@@ -55,6 +55,7 @@ pub(crate) fn run(args: &FileArgs, path: &Path, json: bool) -> Result<(), Failur
 }
 
 fn report(args: &FileArgs, path: &Path) -> Result<Report, Failure> {
+    read_file::check_regular(path)?;
     let format = match args.format {
         Some(format) => read_file::Format::Data(format),
         None => read_file::Format::of(path).map_err(Failure::Usage)?,
@@ -78,7 +79,7 @@ fn report(args: &FileArgs, path: &Path) -> Result<Report, Failure> {
 }
 
 fn of_data(path: &Path, format: &'static Format, options: &DataOptions) -> Result<Report> {
-    let is_file = path.is_file();
+    let is_file = !read_file::is_standard_input(path);
     let has_frames = format.has_frames();
     let (loaded, frames, problem) = if has_frames && is_file {
         let mut trajectory = data::trajectory(path, format, options)?;
@@ -270,16 +271,16 @@ impl ColumnReport {
             }
             ColumnValues::Labels(labels) => ValuesReport::Text {
                 different: labels.names.len(),
-                first: labels.names.iter().take(SHOWN).cloned().collect(),
+                first: labels.names.iter().take(SHOWN).map(|name| one_line(name)).collect(),
             },
         };
-        Self { name: name.clone(), values }
+        Self { name: one_line(name), values }
     }
 }
 
 /// Formats the report. Text from the file has its control characters escaped.
 pub(crate) fn readable(report: &Report) -> String {
-    let mut text = format!("{}\n", one_line(&report.file));
+    let mut text = format!("{}\n", whole_line(&report.file));
     let mut line = |name: &str, value: String| text += &format!("  {name:<11}{value}\n");
     match &report.kind {
         Kind::Data(data) => {
@@ -308,7 +309,7 @@ pub(crate) fn readable(report: &Report) -> String {
             line("samples", samples.to_string());
             line("lights", lights.to_string());
             for file in files {
-                line("file", one_line(file));
+                line("file", whole_line(file));
             }
         }
     }
@@ -340,17 +341,17 @@ pub(crate) fn readable(report: &Report) -> String {
             }
         }
         if let Some(problem) = &data.problem {
-            text += &format!("problem: {}\n", one_line(problem));
+            text += &format!("problem: {}\n", whole_line(problem));
         }
     }
     for note in &report.notes {
-        text += &format!("note: {}\n", one_line(note));
+        text += &format!("note: {}\n", whole_line(note));
     }
     text
 }
 
 fn row(ColumnReport { name, values }: &ColumnReport) -> [String; 3] {
-    let name = one_line(name);
+    let name = name.clone();
     match values {
         ValuesReport::Numbers { min, max, nan } => {
             let range = min
@@ -360,9 +361,8 @@ fn row(ColumnReport { name, values }: &ColumnReport) -> [String; 3] {
             [name, "numbers".to_owned(), range + &nan]
         }
         ValuesReport::Text { different, first } => {
-            let shown = first.iter().map(|name| one_line(name)).collect::<Vec<_>>().join(", ");
             let more = if first.len() < *different { ", …" } else { "" };
-            [name, "text".to_owned(), format!("{different} different: {shown}{more}")]
+            [name, "text".to_owned(), format!("{different} different: {}{more}", first.join(", "))]
         }
     }
 }

@@ -1,6 +1,6 @@
 //! Generated spheres: `pinhole generate` writes them into a file, and `pinhole demo` writes a scene and its picture.
 
-use std::io::ErrorKind;
+use std::io::{ErrorKind, Read as _};
 use std::path::{Path, PathBuf};
 use std::time::Instant;
 
@@ -20,6 +20,7 @@ use crate::terminal::progress::{self, tell};
 use crate::terminal::{memory, threads};
 use pinhole::generate::{BYTES_PER_SPHERE, Kind, check_count};
 use pinhole::image::LayerSet;
+use pinhole_data::load::open_regular;
 use pinhole_data::write;
 
 #[derive(Debug, Args)]
@@ -107,8 +108,10 @@ pub(crate) fn run_demo(args: &DemoArgs) -> Result<(), Failure> {
 
 /// Whether the demo's scene file exists already. A file that the user has changed is refused, never overwritten.
 fn is_there(scene_file: &Path) -> Result<bool, Failure> {
-    match std::fs::read(scene_file) {
-        Ok(found) if found == SCENE.as_bytes() => Ok(true),
+    let mut found = Vec::new();
+    let longest = SCENE.len() as u64 + 1;
+    match open_regular(scene_file).and_then(|file| file.take(longest).read_to_end(&mut found)) {
+        Ok(_) if found == SCENE.as_bytes() => Ok(true),
         Ok(_) => Err(Failure::usage(format!(
             "{SCENE_FILE}: this file exists and differs from the demo's; \
              rename it, or render it with `pinhole render {SCENE_FILE} -o {PICTURE_FILE}`"

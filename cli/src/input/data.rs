@@ -6,7 +6,7 @@ use anyhow::{Context, Error, Result};
 use clap::builder::{PossibleValue, PossibleValuesParser, TypedValueParser};
 
 use crate::flags::settings::Given;
-use crate::input::read_file::read as read_bytes;
+use crate::input::read_file::{check_regular, is_standard_input, read as read_bytes};
 use crate::terminal::failure::Failure;
 use crate::terminal::memory;
 use pinhole::LinearRgb;
@@ -75,10 +75,9 @@ impl DataOptions {
 /// Reads spheres from a file. Of a file with frames only the one that is asked for is in memory. Errors and notes get the
 /// path in front.
 pub(crate) fn read(path: &Path, format: &'static Format, options: &DataOptions) -> Result<Dataset> {
-    let mut loaded = if format.has_frames() && path.is_file() {
-        read_frame(path, format, options)?
-    } else {
-        read_whole(path, format, options)?
+    let mut loaded = match format.has_frames() && !is_standard_input(path) {
+        true => read_frame(path, format, options)?,
+        false => read_whole(path, format, options)?,
     };
     complete_notes(&mut loaded, path, options);
     Ok(loaded)
@@ -104,6 +103,7 @@ pub(crate) fn read_frame_of(path: &Path, file: &mut Trajectory, options: &DataOp
 
 /// Reads the frame that is asked for, if there is memory for it.
 fn read_frame(path: &Path, format: &'static Format, options: &DataOptions) -> Result<Dataset> {
+    check_regular(path)?;
     let frame = options.frame.unwrap_or_default();
     let options = options.to_read().with_format(format);
     let found = Trajectory::open_up_to(path, &options).map_err(|error| named(path, error))?;
@@ -113,6 +113,7 @@ fn read_frame(path: &Path, format: &'static Format, options: &DataOptions) -> Re
 
 /// Finds all frames of a file, and checks that there is memory for the one that is asked for.
 pub(crate) fn trajectory(path: &Path, format: &'static Format, options: &DataOptions) -> Result<Trajectory> {
+    check_regular(path)?;
     let all = options.to_read().with_format(format);
     let found = Trajectory::open(path, &all).map_err(|error| named(path, error))?;
     check_frame(path, &found, options.frame.unwrap_or_default())?;

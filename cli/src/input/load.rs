@@ -8,7 +8,7 @@ use super::contents::Contents;
 use super::look::FramedScene;
 use super::source::{FoundFrames, OpenFrames, Source};
 use crate::input::data::{self, DataOptions, as_usage};
-use crate::input::read_file::Format;
+use crate::input::read_file::{Format, is_standard_input};
 use crate::terminal::failure::Failure;
 use pinhole::camera::CameraPath;
 use pinhole::glam::DVec3;
@@ -61,8 +61,8 @@ impl Source {
             let with_frames = load::Format::extensions_of(load::Format::has_frames);
             return Ok(Err(format!("files of the format {} have no frames; those of {with_frames} have", format.name)));
         }
-        if path.exists() && !path.is_file() || path.as_os_str() == "-" {
-            return Ok(Err("frames are read one by one, which needs a regular file".to_owned()));
+        if is_standard_input(&path) {
+            return Ok(Err("frames are read one by one, which needs a file".to_owned()));
         }
         let options = DataOptions { frame: None, ..options };
         let file = data::trajectory(&path, format, &options).map_err(as_usage)?;

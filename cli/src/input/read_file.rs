@@ -1,5 +1,6 @@
 //! Reads input files, and tells their formats from their names.
 
+use std::fs::File;
 use std::io::{Cursor, Read, Seek};
 use std::path::Path;
 
@@ -16,11 +17,11 @@ pub(crate) fn is_standard_input(path: &Path) -> bool {
 /// Whether a file starts as one that is compressed with gzip.
 pub(crate) fn is_gzip(path: &Path) -> bool {
     let mut start = [0; 2];
-    let read = std::fs::File::open(path).and_then(|mut file| file.read_exact(&mut start));
+    let read = load::open_regular(path).and_then(|mut file| file.read_exact(&mut start));
     read.is_ok() && start == [0x1f, 0x8b]
 }
 
-/// Bytes that are read first from a file whose size is not known, such as a pipe.
+/// Bytes that are read first from standard input, whose size is not known.
 const FIRST_PIECE: u64 = 1 << 20;
 
 /// A file of which any part can be read.
@@ -28,28 +29,48 @@ pub(crate) trait ReadSeek: Read + Seek {}
 
 impl<S: Read + Seek> ReadSeek for S {}
 
-/// Opens a file of which parts are read. One that is not a regular file, such as a pipe, is read into memory.
+/// Opens a file of which parts are read. Standard input is read into memory.
 pub(crate) fn open_seekable(path: &Path) -> Result<Box<dyn ReadSeek>> {
-    if is_standard_input(path) || !path.is_file() {
+    if is_standard_input(path) {
         return Ok(Box::new(Cursor::new(read(path)?)));
     }
-    let file = std::fs::File::open(path);
-    Ok(Box::new(file.with_context(|| format!("{}: cannot be read", path.display()))?))
+    Ok(Box::new(open(path)?))
 }
 
-/// Reads a whole file. A regular file is read into memory of exactly its size.
-pub(crate) fn read(path: &Path) -> Result<Vec<u8>> {
-    if path.is_dir() {
-        bail!("{}: this is a folder; name a file", path.display());
+/// Refuses a path at which something else than a regular file is, such as a pipe or a device.
+pub(crate) fn check_regular(path: &Path) -> Result<()> {
+    match path.metadata() {
+        Ok(found) if found.is_dir() => bail!("{}: this is a folder; name a file", path.display()),
+        Ok(found) if !found.is_file() && !is_standard_input(path) => bail!(
+            "{}: this is not a regular file; copy it to a file, or give data on standard input, with - and --format",
+            path.display()
+        ),
+        _ => Ok(()),
     }
+}
+
+/// Opens a regular file.
+pub(crate) fn open(path: &Path) -> Result<File> {
+    check_regular(path)?;
+    load::open_regular(path).with_context(|| format!("{}: cannot be read", path.display()))
+}
+
+/// Reads a whole regular file, or standard input.
+pub(crate) fn read(path: &Path) -> Result<Vec<u8>> {
+    if is_standard_input(path) {
+        return read_all(path, std::io::stdin().lock(), 0);
+    }
+    read_open(path, open(path)?)
+}
+
+/// Reads a whole regular file that is open into memory of exactly its size.
+pub(crate) fn read_open(path: &Path, file: File) -> Result<Vec<u8>> {
+    let size = file.metadata().map_or(0, |metadata| metadata.len());
+    read_all(path, file, size)
+}
+
+fn read_all(path: &Path, mut file: impl Read, size: u64) -> Result<Vec<u8>> {
     let cannot_read = || format!("{}: cannot be read", path.display());
-    let (mut file, size): (Box<dyn Read>, u64) = if is_standard_input(path) {
-        (Box::new(std::io::stdin().lock()), 0)
-    } else {
-        let file = std::fs::File::open(path).with_context(cannot_read)?;
-        let size = file.metadata().map_or(0, |metadata| metadata.len());
-        (Box::new(file), size)
-    };
     let what = format!("{}: reading {size} bytes needs", path.display());
     memory::check_reading(&what, size)?;
     let mut bytes = Vec::new();
@@ -57,7 +78,7 @@ pub(crate) fn read(path: &Path) -> Result<Vec<u8>> {
         .ok()
         .and_then(|size| bytes.try_reserve_exact(size).ok())
         .with_context(|| format!("{}: there is not enough memory for {size} bytes", path.display()))?;
-    // Pipes and devices report the size 0, so memory is checked again for each piece that is read.
+    // The size of standard input is not known, so memory is checked again for each piece that is read.
     let mut piece = size.saturating_add(1).max(FIRST_PIECE);
     while file.by_ref().take(piece).read_to_end(&mut bytes).with_context(cannot_read)? as u64 == piece {
         piece = bytes.len() as u64;

@@ -10,7 +10,7 @@ use crate::bench::args::BenchArgs;
 use crate::bricks::BrickFile;
 use crate::flags::settings::Given;
 use crate::input::data::{self, DataOptions};
-use crate::input::read_file::{Format, data_format};
+use crate::input::read_file::{Format, check_regular, data_format};
 use crate::output::picture::PictureFormat;
 use crate::terminal::failure::Failure;
 use pinhole::image::color::LinearRgb;
@@ -50,6 +50,7 @@ impl Source {
     /// Makes a source from a path and its flags. Data files have one ray for each pixel, unless a flag asks for another
     /// style.
     pub(crate) fn new(path: &Path, given: &Given) -> Result<Self, Failure> {
+        check_regular(path)?;
         let named = given.get("format").and_then(load::Format::of_name);
         let format = match named {
             Some(format) => Format::Data(format),

@@ -2,14 +2,22 @@
 //! `cli/src/output/files.rs` writes; and the digests that identify files.
 
 use std::fs;
-pub(super) use std::fs::{File, create_dir, read, read_to_string, remove_dir_all, remove_file};
+pub(super) use std::fs::{File, create_dir, remove_dir_all, remove_file};
 use std::io::{self, Read, Seek, SeekFrom};
+#[cfg(unix)]
+use std::os::unix::fs::OpenOptionsExt;
+#[cfg(windows)]
+use std::os::windows::fs::OpenOptionsExt;
 use std::path::Path;
 use std::time::SystemTime;
 
+use anyhow::{Result, ensure};
 use data_encoding::HEXLOWER;
 use serde::{Deserialize, Serialize};
 use sha2::{Digest, Sha256};
+
+use crate::input::read_file::read_open;
+use pinhole_data::load::open_regular;
 
 /// Returns the names in a folder. Listing them makes network file systems look for new files.
 pub(super) fn names(folder: &Path) -> Vec<String> {
@@ -17,9 +25,47 @@ pub(super) fn names(folder: &Path) -> Vec<String> {
     entries.filter_map(|entry| entry.file_name().into_string().ok()).collect()
 }
 
+/// Opens a file in the folder of a job. Links are not followed, because the folder may be that of a stranger.
+pub(super) fn open(path: &Path) -> io::Result<File> {
+    let mut options = File::options();
+    options.read(true);
+    // A link or a pipe may take the place of the file at any time, so that opening it must do no harm either.
+    #[cfg(unix)]
+    OpenOptionsExt::custom_flags(&mut options, libc::O_NOFOLLOW | libc::O_NONBLOCK);
+    #[cfg(windows)]
+    OpenOptionsExt::custom_flags(&mut options, FILE_FLAG_OPEN_REPARSE_POINT);
+    let is_regular = |found: fs::Metadata| found.is_file().then_some(()).ok_or_else(|| io::Error::other(LINK));
+    is_regular(path.symlink_metadata()?)?;
+    let file = options.open(path)?;
+    is_regular(file.metadata()?)?;
+    Ok(file)
+}
+
+/// Reads a file in the folder of a job, without following links.
+pub(super) fn read(path: &Path) -> Result<Vec<u8>> {
+    read_open(path, open(path)?)
+}
+
+/// Refuses the folder of parts if it is a link, or has links or anything else than files.
+pub(super) fn check_no_links(parts: &Path) -> Result<()> {
+    let is_folder = parts.symlink_metadata().map_or(true, |found| found.is_dir());
+    ensure!(is_folder, "{}: {LINK}; remove it", parts.display());
+    for entry in fs::read_dir(parts).into_iter().flatten().flatten() {
+        // A file that another process has renamed meanwhile has no type.
+        let is_file = entry.file_type().map_or(true, |kind| kind.is_file());
+        ensure!(is_file, "{}: {LINK}; remove it", entry.path().display());
+    }
+    Ok(())
+}
+
+const LINK: &str = "this is a link or a special file, which the folder of a job must not have";
+
+#[cfg(windows)]
+const FILE_FLAG_OPEN_REPARSE_POINT: u32 = 0x0020_0000;
+
 /// The time at which a file was written, by the clock of the file system.
 pub(super) fn modified(path: &Path) -> Option<SystemTime> {
-    fs::metadata(path).and_then(|file| file.modified()).ok()
+    fs::symlink_metadata(path).and_then(|file| file.modified()).ok()
 }
 
 /// The digest of files of at most this many bytes includes all bytes.
@@ -45,7 +91,7 @@ pub(super) fn hex(bytes: &[u8]) -> String {
 }
 
 pub(super) fn digest(path: &Path) -> io::Result<(u64, String)> {
-    let mut file = File::open(path)?;
+    let mut file = open_regular(path)?;
     let length = file.metadata()?.len();
     let mut digest = Sha256::new();
     let mut piece = vec![0; PIECE as usize];
@@ -73,6 +119,19 @@ mod tests {
     use std::io::Write;
 
     use super::*;
+
+    /// A link that appears after the folder was checked does no harm either.
+    #[test]
+    #[cfg(unix)]
+    fn links_are_neither_read_nor_written_through() {
+        let folder = tempfile::tempdir().unwrap();
+        let [mine, link] = ["mine", "link"].map(|name| folder.path().join(name));
+        fs::write(&mine, "mine").unwrap();
+        std::os::unix::fs::symlink(&mine, &link).unwrap();
+        assert!(read(&link).is_err() && open(folder.path()).is_err());
+        crate::output::files::replace(&link, |file| file.write_all(b"part")).unwrap();
+        assert_eq!((read(&link).unwrap(), read(&mine).unwrap()), (b"part".to_vec(), b"mine".to_vec()));
+    }
 
     #[test]
     fn digests_are_those_of_sha256() {

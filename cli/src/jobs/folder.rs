@@ -11,6 +11,7 @@ use super::part_file::{self, Header, Problem};
 use crate::frames::Overview;
 use crate::jobs::manifest::{Manifest, NAME, StoredOverview};
 use crate::terminal::failure::Failure;
+use pinhole::internals::text::one_line;
 use pinhole_figure::color_by::JoinedKeys;
 
 /// A job and its folder.
@@ -32,6 +33,7 @@ impl Folder {
         let absolute =
             std::path::absolute(path).with_context(|| format!("{}: this path has no meaning", path.display()))?;
         let manifest = Manifest::read(&path.join(NAME))?;
+        files::check_no_links(&path.join(PARTS))?;
         Ok(Self { path: absolute, manifest })
     }
 
@@ -73,20 +75,20 @@ impl Folder {
     /// Enters the folder in which the job was split, so that its relative paths mean the same files.
     pub(super) fn enter(&self) -> Result<(), Failure> {
         let folder = &self.manifest.folder;
+        let shown = one_line(folder);
         Ok(std::env::set_current_dir(folder).with_context(|| {
-            format!("{folder}: the folder in which the job was split cannot be entered; split it again here")
+            format!("{shown}: the folder in which the job was split cannot be entered; split it again here")
         })?)
     }
 
     /// Refuses inputs other than those that were split. The current folder must be that of [`Folder::enter`].
     pub(super) fn check_inputs(&self) -> Result<(), Failure> {
         for file in &self.manifest.files {
-            let found = files::digest(Path::new(&file.path));
-            let found = found.with_context(|| format!("{}: cannot be read", file.path))?;
+            let path = one_line(&file.path);
+            let found = files::digest(Path::new(&file.path)).with_context(|| format!("{path}: cannot be read"))?;
             if found != (file.bytes, file.sha256.clone()) {
                 return Err(Failure::Job(anyhow!(
-                    "{}: this file has changed since the job was split; split it again",
-                    file.path
+                    "{path}: this file has changed since the job was split; split it again"
                 )));
             }
         }

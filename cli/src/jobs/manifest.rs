@@ -9,6 +9,7 @@ use serde_json::Value;
 use crate::jobs::files::{self, InputFile};
 use crate::terminal::failure::Failure;
 use pinhole::image::{Layer, LayerSet};
+use pinhole::internals::text::one_line;
 
 /// The name of the file in the folder of a job.
 pub(crate) const NAME: &str = "job.json";
@@ -98,14 +99,13 @@ impl Manifest {
 
     pub(crate) fn read(path: &Path) -> Result<Self> {
         let place = || path.display().to_string();
-        let text =
-            files::read_to_string(path).with_context(|| format!("{}: this is not the folder of a job", place()))?;
-        Self::parse(&text).with_context(place)
+        let bytes = files::read(path).with_context(|| format!("{}: this is not the folder of a job", place()))?;
+        Self::parse(&bytes).with_context(place)
     }
 
-    fn parse(text: &str) -> Result<Self> {
+    fn parse(text: &[u8]) -> Result<Self> {
         let damaged = "this file is damaged; split the job again";
-        let value: Value = serde_json::from_str(text).context(damaged)?;
+        let value: Value = serde_json::from_slice(text).context(damaged)?;
         let known = |key: &str| value.get(key).map(Value::to_string).unwrap_or_default();
         let (format, version) = (known("pinhole_job"), known("version"));
         if format.is_empty() {
@@ -115,7 +115,7 @@ impl Manifest {
             bail!(
                 "this job is of pinhole {}, and this is pinhole {VERSION}, whose pixels may differ; use the same \
                  version, or split the job again",
-                version.trim_matches('"')
+                one_line(version.trim_matches('"'))
             );
         }
         let manifest: Self = serde_json::from_value(value).context(damaged)?;

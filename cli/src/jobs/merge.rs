@@ -20,6 +20,7 @@ use crate::terminal::failure::Failure;
 use crate::terminal::progress::tell;
 use crate::terminal::threads;
 use pinhole::image::{Image, LayerSet};
+use pinhole::internals::text::{listed, one_line};
 use pinhole::render::NearestPicture;
 
 /// The time between two looks for parts that are not visible yet.
@@ -134,7 +135,7 @@ impl Devices {
         Err(Failure::Job(anyhow!(
             "noise is removed where parts are merged, and they were rendered by {}, but this is {here}; merge on a \
              machine with that device, or add --allow-mixed-adapters",
-            self.described.join(", ")
+            listed(self.described.iter().map(|device| one_line(device)), 8)
         )))
     }
 }
@@ -199,11 +200,11 @@ fn device_of(headers: &[Header], allows_mixed: bool) -> Result<Vec<String>, Fail
         devices.entry(&header.device).or_default().push(header.unit);
     }
     if devices.len() > 1 && !allows_mixed {
-        let words: Vec<String> = devices.iter().map(|(device, units)| format!("{device} {}", ranges(units))).collect();
+        let words = devices.iter().map(|(device, units)| format!("{} {}", one_line(device), ranges(units)));
         return Err(Failure::Job(anyhow!(
             "parts were rendered by different devices, whose pixels may differ in the last bits: {}; render some of them \
              again, or add --allow-mixed-adapters",
-            words.join(", ")
+            listed(words, 8)
         )));
     }
     Ok(devices.into_keys().map(str::to_owned).collect())

@@ -1,7 +1,7 @@
 //! `pinhole job part`: renders units, each into a file that appears whole or not at all.
 
 use std::io::{BufWriter, Write};
-use std::path::PathBuf;
+use std::path::Path;
 use std::time::{Duration, Instant};
 
 use anyhow::Context;
@@ -13,7 +13,7 @@ use crate::frames::{Ready, ReadyOptions, ready};
 use crate::input::Input;
 use crate::jobs::args::{PartArgs, Recipe, check_same};
 use crate::jobs::manifest::{VERSION, parse_list};
-use crate::output::files::{name_all, unnamed_with};
+use crate::output::files::replace;
 use crate::render::device::OpenDevice;
 use crate::render::stop_rule::StopRule;
 use crate::render::views::{Shot, views_of};
@@ -124,15 +124,14 @@ impl Work<'_> {
     }
 }
 
-/// Writes the file of a part, which appears whole or not at all.
-fn write(path: &PathBuf, header: &Header, pictures: &Pictures) -> Result<(), Failure> {
-    let file = unnamed_with(path, |file| {
+/// Writes the file of a part, which appears whole or not at all. A link in its place is replaced, not followed.
+fn write(path: &Path, header: &Header, pictures: &Pictures) -> Result<(), Failure> {
+    Ok(replace(path, |file| {
         let mut out = BufWriter::new(file);
         part_file::write(header, pictures, &mut out)?;
         // The data need not reach the disk: the digest shows whether a crash of the machine cut off a part.
         out.flush()
-    })?;
-    Ok(name_all(vec![(path, file)])?)
+    })?)
 }
 
 /// Describes the renderer such that equal texts mean equal bits: an adapter with its driver, or the CPU.

@@ -177,7 +177,7 @@ pub(super) fn read(path: &Path, manifest: &Manifest, unit: usize) -> Result<(Hea
 }
 
 fn open(path: &Path) -> Result<files::File, Problem> {
-    files::File::open(path).map_err(|error| Problem::of(&error))
+    files::open(path).map_err(|error| Problem::of(&error))
 }
 
 /// Reads the header, and returns the number of bytes up to its end.

@@ -15,8 +15,10 @@ use crate::jobs::manifest::{MOST_UNITS, Manifest, NAME, UnitKind, VERSION, layer
 use crate::output::files::{name_all, unnamed};
 use crate::terminal::failure::Failure;
 use crate::terminal::progress::{self, tell};
+use crate::terminal::text::in_quotes;
 use crate::terminal::threads;
 use pinhole::image::{Layer, LayerSet};
+use pinhole::internals::text::is_control;
 
 /// Facts that are known once the first picture was read.
 struct JobInput {
@@ -131,6 +133,12 @@ fn asked_layers(texts: &[String]) -> Result<LayerSet, Failure> {
 
 /// Refuses a folder that exists, and returns its parent.
 fn check_new(job: &Path) -> Result<PathBuf, Failure> {
+    if job.to_string_lossy().contains(is_control) {
+        return Err(Failure::usage(format!(
+            "{}: this name has control characters, which a script may take for commands; choose another",
+            job.display()
+        )));
+    }
     if job.symlink_metadata().is_ok() {
         return Err(Failure::usage(format!("{}: this exists already; name a new folder for the job", job.display())));
     }
@@ -235,7 +243,7 @@ fn said(folder: &Folder) {
         folder.path.display(),
         manifest.units,
         plural(manifest.units),
-        folder.path.display(),
+        in_quotes(&folder.path.to_string_lossy()),
         manifest.units.saturating_sub(1)
     ));
 }

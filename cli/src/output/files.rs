@@ -75,17 +75,16 @@ impl NewFolder {
 
 /// Creates a temporary file in the folder of the final file. It is removed if the program is stopped.
 pub(crate) fn temporary(path: &Path) -> Result<NamedTempFile> {
-    interrupt::creating(|| temporary_in_folder(path), |file| file.path().to_path_buf())
+    temporary_in(folder(&canonical(path)), path)
 }
 
-fn temporary_in_folder(path: &Path) -> Result<NamedTempFile> {
+fn temporary_in(folder: &Path, path: &Path) -> Result<NamedTempFile> {
     let mut builder = tempfile::Builder::new();
     builder.prefix(".pinhole-");
     // The umask applies to these permissions, as for any new file.
     #[cfg(unix)]
     builder.permissions(<Permissions as std::os::unix::fs::PermissionsExt>::from_mode(0o666));
-    builder
-        .tempfile_in(folder(&canonical(path)))
+    interrupt::creating(|| builder.tempfile_in(folder), |file| file.path().to_path_buf())
         .map_err(|error| without_name(&error))
         .with_context(|| format!("{}: cannot be written", path.display()))
 }
@@ -107,15 +106,32 @@ pub(crate) fn unnamed_with(
     path: &Path,
     write: impl FnOnce(&mut NamedTempFile) -> io::Result<()>,
 ) -> Result<NamedTempFile> {
-    let _phase = profile::phase("write");
     let cannot_write = || format!("{}: cannot be written", path.display());
-    let mut file = temporary(path)?;
-    write(&mut file).map_err(|error| without_name(&error)).with_context(cannot_write)?;
-    file.as_file().sync_all().with_context(cannot_write)?;
+    let file = filled(path, temporary(path)?, write)?;
     if let Ok(old) = path.metadata() {
         file.as_file().set_permissions(old.permissions()).with_context(cannot_write)?;
     }
     Ok(file)
+}
+
+fn filled(
+    path: &Path,
+    mut file: NamedTempFile,
+    write: impl FnOnce(&mut NamedTempFile) -> io::Result<()>,
+) -> Result<NamedTempFile> {
+    let _phase = profile::phase("write");
+    let cannot_write = || format!("{}: cannot be written", path.display());
+    write(&mut file).map_err(|error| without_name(&error)).with_context(cannot_write)?;
+    file.as_file().sync_all().with_context(cannot_write)?;
+    Ok(file)
+}
+
+/// Writes a file with a function, in a folder that strangers may have filled: a link with its name is replaced, and its
+/// target is left alone.
+pub(crate) fn replace(path: &Path, write: impl FnOnce(&mut NamedTempFile) -> io::Result<()>) -> Result<()> {
+    let file = filled(path, temporary_in(folder(path), path)?, write)?;
+    let named = interrupt::all_or_nothing(true, || file.persist(path).map(drop));
+    named.map_err(|error| error.error).with_context(|| format!("{}: cannot be written", path.display()))
 }
 
 /// Gives complete files their final names. If one cannot be named, those that did not exist before are removed again.

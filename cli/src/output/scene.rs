@@ -7,7 +7,7 @@ use anyhow::{Context, Result, anyhow};
 use crate::input::{Input, extension};
 use crate::output::files::{check_not_inputs, check_writable};
 use crate::terminal::failure::Failure;
-use pinhole::internals::text::one_line;
+use pinhole::internals::text::whole_line;
 use pinhole_figure::scene_file::Settled;
 
 /// Returns the text of the scene file. Paths in it are relative to `folder`, or else to the current one.
@@ -35,7 +35,7 @@ pub(crate) fn text(input: &Input, folder: Option<&Path>) -> Result<String> {
     Ok(format!(
         "# The scene that `pinhole render` made of {}, with every value that it chose.\n\
          # Paths are relative to the folder {place}.\n\n{}\n",
-        one_line(&input.report.path),
+        whole_line(&input.report.path),
         input.file.settled(settled).trim_end()
     ))
 }

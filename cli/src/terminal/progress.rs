@@ -9,14 +9,14 @@ use std::time::{Duration, Instant};
 use anyhow::Context;
 use indicatif::{ProgressBar, ProgressStyle};
 
-use pinhole::internals::text::one_line;
+use pinhole::internals::text::whole_line;
 
 /// Shows a stage whose length is not known.
 pub(crate) fn stage(text: impl Into<Cow<'static, str>>) {
     let mut line = line();
     if line.is_seen() && !line.is_held {
         let bar = line.show(ProgressBar::new_spinner(), "{spinner} {wide_msg}", None);
-        bar.set_message(one_line(&text.into()));
+        bar.set_message(whole_line(&text.into()));
         bar.enable_steady_tick(Duration::from_millis(100));
     }
 }
@@ -172,7 +172,7 @@ pub(crate) fn while_hidden<T>(write: impl FnOnce() -> T) -> T {
 
 /// Prints one line on standard error, with control characters escaped.
 pub(crate) fn tell(line: impl fmt::Display) {
-    let line = one_line(&line.to_string());
+    let line = whole_line(&line.to_string());
     while_hidden(|| {
         let _ = writeln!(io::stderr().lock(), "{line}");
     });

@@ -3,10 +3,13 @@
 use anyhow::Context;
 use clap::builder::{PossibleValue, PossibleValuesParser, TypedValueParser};
 
-/// Formats a report as JSON.
+use pinhole::internals::text::is_control;
+
+/// Formats a report as JSON. Its texts keep their control characters, but as `\u009b`, so that a terminal may show it.
 pub(crate) fn json(report: &impl serde::Serialize) -> anyhow::Result<String> {
-    let text = serde_json::to_string_pretty(report);
-    Ok(text.context("the report cannot be written as JSON")? + "\n")
+    let text = serde_json::to_string_pretty(report).context("the report cannot be written as JSON")?;
+    let escaped = |c| if c != '\n' && is_control(c) { format!("\\u{:04x}", u32::from(c)) } else { String::from(c) };
+    Ok(text.chars().map(escaped).collect::<String>() + "\n")
 }
 
 /// Formats rows under a heading, indented by two spaces.

@@ -53,7 +53,7 @@ impl From<Failure> for ViewError {
 impl fmt::Display for ViewError {
     /// Writes the message on one line, without the word `error`.
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        f.write_str(&pinhole::internals::text::one_line(&self.message))
+        f.write_str(&pinhole::internals::text::whole_line(&self.message))
     }
 }
 

@@ -247,4 +247,15 @@ fn what_was_changed_is_refused() {
     // A forged certificate names another exposure, with which the samples would differ.
     std::fs::write(folder.path("forged.png"), unknown).unwrap();
     folder.refuses("verify forged.png --scene scene.toml", 3, "the picture is not legal: ");
+    // Nothing in it reaches the terminal as it is.
+    let evil = "setting tone \u{1b}]0;evil\u{7}\u{9b}2J\n";
+    for evil in [evil.to_owned(), evil.replace("tone", "label")] {
+        let evil = with_text(&b, |text| resealed(&text.replace("setting exposure 0.4\n", &evil)));
+        std::fs::write(folder.path("evil.png"), evil).unwrap();
+        let run = folder.run("verify evil.png --scene scene.toml --json a.json");
+        let said = [&run.stdout[..], run.stderr.as_bytes()].concat();
+        let said =
+            String::from_utf8(said).unwrap() + &std::fs::read_to_string(folder.path("a.json")).unwrap_or_default();
+        assert!(run.code != 0 && said.lines().all(|line| !line.contains(char::is_control)), "{said:?}");
+    }
 }

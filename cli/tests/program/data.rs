@@ -54,6 +54,23 @@ fn a_trajectory_is_described_by_one_of_its_frames() {
     assert!(text(&folder, "info cut.xyz").ends_with(&format!("problem: {problem}\n")));
 }
 
+/// Names in files can neither write to the terminal nor fill it.
+#[test]
+fn names_in_files_are_only_shown() {
+    let long = "(".repeat(100_000);
+    let header = format!("x,y,z,a\u{9b}2J,b\u{202e}c\u{1b}[2J,{long}\n1,2,3,4,5,6\n2,3,4,5,6,7\n");
+    let folder = Folder::with(&[("a.csv", &header)]);
+    let select = folder.command("render a.csv -o a.png --backend cpu --select").arg(&long).output().unwrap();
+    let column = folder.command("render a.csv -o a.png --backend cpu --color-by").arg(&long[1..]).output().unwrap();
+    for said in [text(&folder, "info a.csv"), text(&folder, "info a.csv --json")]
+        .into_iter()
+        .chain([select, column].map(|output| String::from_utf8(output.stderr).unwrap()))
+    {
+        let is_shown = |line: &str| line.chars().count() < 900 && !line.contains(['\u{1b}', '\u{9b}', '\u{202e}']);
+        assert!(said.lines().all(is_shown), "{said}");
+    }
+}
+
 #[test]
 fn points_without_frames_and_spheres_that_cannot_be_rendered() {
     let folder = Folder::with(&[(

@@ -177,6 +177,8 @@ fn set_device(folder: &Folder, unit: usize, device: &str) {
 fn parts_of_different_devices_are_merged_only_if_that_is_allowed() {
     let folder = folder();
     through_parts(&folder, SPLIT, "-o good%d.png");
+    set_device(&folder, 3, "\u{1b}]0;evil\u{7}\u{9b}2J\u{202e}");
+    folder.run("job merge job -o m%d.png").refused(1, r"\u{1b}]0;evil\u{7}\u{9b}2J\u{202e} 3");
     set_device(&folder, 3, "Another GPU (driver 1.2)");
     let run = folder.run("job merge job -o m%d.png");
     run.refused(1, "Another GPU (driver 1.2) 3, CPU (");
@@ -184,6 +186,55 @@ fn parts_of_different_devices_are_merged_only_if_that_is_allowed() {
     assert!(!folder.path("m0.png").exists());
     folder.run("job merge job -o m%d.png --allow-mixed-adapters -q").succeeded();
     assert!(folder.read("m0.png") == folder.read("good0.png"));
+}
+
+/// The folder of a job may be that of a stranger.
+#[test]
+fn no_link_in_the_folder_of_a_job_is_followed() {
+    let folder = folder();
+    split_frames(&folder);
+    folder.run("job part job 1 -q").succeeded();
+    fs::write(folder.path("mine"), "mine").unwrap();
+    let words = "this is a link or a special file, which the folder of a job must not have";
+    for name in
+        ["parts", "parts/000000.part", "parts/000001.part", "parts/.pinhole-job-0.png", "job.json", "overview.bin"]
+    {
+        let (place, elsewhere) = (folder.path("job").join(name), folder.path("elsewhere"));
+        let was_there = fs::rename(&place, &elsewhere).is_ok();
+        let target = folder.path(if was_there { "elsewhere" } else { "mine" });
+        std::os::unix::fs::symlink(target, &place).unwrap();
+        folder.refuses("job part job 0-3 -q", 1, words);
+        if name.starts_with("parts") {
+            folder.refuses("job status job --missing", 1, words);
+            folder.refuses("job merge job -o m%d.png", 1, words);
+        }
+        fs::remove_file(&place).unwrap();
+        let _ = fs::rename(&elsewhere, &place);
+        assert_eq!(folder.read("mine"), b"mine");
+    }
+    let make_pipe = |path| assert!(std::process::Command::new("mkfifo").arg(path).status().unwrap().success());
+    make_pipe(part(&folder, 0));
+    folder.refuses("job part job 0 -q", 1, words);
+    fs::remove_file(part(&folder, 0)).unwrap();
+    // An input that became a pipe is not waited for.
+    fs::remove_file(folder.path("a.xyz")).unwrap();
+    make_pipe(folder.path("a.xyz"));
+    folder.refuses("job part job 0 -q", 1, "a.xyz: cannot be read: this is not a regular file");
+}
+
+/// What a name could do to a script that has it is refused, and a hint can be copied.
+#[test]
+fn names_of_jobs_are_no_commands() {
+    let folder = folder();
+    let split = |job: &str| folder.command("job split a.xyz --backend cpu -o").arg(job).output().unwrap();
+    for name in ["K\ntouch PWNED1\n", "a\rb", "a\u{1b}]0;x\u{7}", "a\u{9b}2J", "a\u{202e}b"] {
+        let output = split(name);
+        assert_eq!(output.status.code(), Some(2));
+        let said = String::from_utf8(output.stderr).unwrap();
+        assert!(said.contains(": this name has control characters, ") && said.lines().count() == 1, "{said}");
+    }
+    let said = String::from_utf8(split("K;touch PWNED2").stderr).unwrap();
+    assert!(said.ends_with("render them with `pinhole job part 'K;touch PWNED2' 0-0`\n"), "{said}");
 }
 
 /// A stand-in for `sbatch` that logs its arguments and runs the script at once, once for each task of an array.

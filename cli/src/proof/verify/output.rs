@@ -13,6 +13,7 @@ use crate::proof::verify::args::VerifyArgs;
 use crate::proof::verify::page::page;
 use crate::proof::verify::report::{self, Report};
 use crate::terminal::failure::Failure;
+use crate::terminal::text::json;
 use crate::terminal::{progress, threads};
 use pinhole::image::Image;
 use pinhole::verify::denoised::DenoiseCertificate;
@@ -116,8 +117,8 @@ impl VerifyOutputs {
             let mut files = Vec::new();
             if let Some(path) = &self.json {
                 progress::stage("writing");
-                let json = serde_json::to_string_pretty(report).context("the report cannot be written as JSON")? + "\n";
-                files.push((path, unnamed(path, json.as_bytes())?));
+                let text = json(report)?;
+                files.push((path, unnamed(path, text.as_bytes())?));
             }
             if let Some(path) = &self.page {
                 progress::stage("drawing the report");

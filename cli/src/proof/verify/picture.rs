@@ -15,9 +15,10 @@ use crate::render::Job;
 use crate::render::stop_rule::StopRule;
 use crate::terminal::failure::Failure;
 use crate::terminal::progress::{self, answer};
+use crate::terminal::text::{self, in_quotes};
 use crate::terminal::threads;
 use pinhole::image::encoding::Encoding;
-use pinhole::internals::text::one_line;
+use pinhole::internals::text::{one_line, whole_line};
 use pinhole::render::Integrator;
 use pinhole::verify::Outcome;
 use pinhole::verify::finished::PixelVerdict;
@@ -68,8 +69,8 @@ pub(crate) fn run(args: &VerifyArgs, path: &Path, scene: &Path) -> Result<(), Fa
     check_work(path, &input, args.work)?;
     let judged = certified::judge(&input, &encoding, &outputs, &written)?;
     progress::clear();
-    let settings: String = certificate.settings.iter().map(|[name, value]| format!(" --{name}={value}")).collect();
-    let settings = one_line(&settings);
+    let shown = |[name, value]: &[String; 2]| format!(" --{name}={}", in_quotes(&one_line(value)));
+    let settings = whole_line(&certificate.settings.iter().map(shown).collect::<String>());
     let table = format!("{:<12}{settings}\n{}", "settings", certified::table(&judged));
     answer(table.as_bytes())?;
     if let Some(json) = &args.json {
@@ -80,7 +81,7 @@ pub(crate) fn run(args: &VerifyArgs, path: &Path, scene: &Path) -> Result<(), Fa
             picture: path.display().to_string(),
             width,
             height,
-            adapter: &certificate.adapter,
+            adapter: &one_line(&certificate.adapter),
             settings: &certificate.settings,
             exact,
             legal,
@@ -91,7 +92,7 @@ pub(crate) fn run(args: &VerifyArgs, path: &Path, scene: &Path) -> Result<(), Fa
             outcome: judged.outcome(),
             command: command_line(),
         };
-        let text = serde_json::to_string_pretty(&report).context("the report cannot be written as JSON")? + "\n";
+        let text = text::json(&report)?;
         name_all(vec![(json, unnamed(json, text.as_bytes())?)])?;
     }
     certified::verdict(&judged)

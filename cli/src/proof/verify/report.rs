@@ -8,7 +8,7 @@ use serde::Serialize;
 use crate::render::device::AdapterReport;
 use crate::terminal::text::in_quotes;
 use pinhole::image::Image;
-use pinhole::internals::text::one_line;
+use pinhole::internals::text::{one_line, whole_line};
 use pinhole::verify::denoised::{self, DenoiseCertificate};
 use pinhole::verify::run_file::{Run, scene_sha256};
 use pinhole::verify::{
@@ -115,7 +115,7 @@ impl<'a> Report<'a> {
                 .collect(),
             outcome,
             legal: outcome == Outcome::Proved,
-            command: one_line(&provenance.command),
+            command: whole_line(&provenance.command),
             certificate,
             open: Vec::new(),
         }
@@ -170,7 +170,7 @@ impl<'a> Report<'a> {
 /// Returns the command line of this program, quoted for a shell.
 pub(crate) fn command_line() -> String {
     let arguments = std::env::args_os().skip(1);
-    let arguments = arguments.map(|word| in_quotes(&one_line(&word.to_string_lossy())));
+    let arguments = arguments.map(|word| in_quotes(&whole_line(&word.to_string_lossy())));
     std::iter::once("pinhole".to_owned()).chain(arguments).collect::<Vec<_>>().join(" ")
 }
 

@@ -84,6 +84,9 @@ pub(super) fn folder(arguments: &str) -> Folder {
         let flags = "--frames :2 --tiles 2x1 --size 40x30 --samples 2 --backend cpu -q";
         folder.run(&format!("job split moving.xyz -o made {flags}")).succeeded();
     }
+    for name in ["pipe.xyz", "pipe.toml", "pipe.bricks"].into_iter().filter(|name| is_named(name)) {
+        assert!(std::process::Command::new("mkfifo").arg(folder.path(name)).status().unwrap().success());
+    }
     folder
 }
 

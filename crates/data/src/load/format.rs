@@ -31,6 +31,8 @@ pub struct Format {
     /// Whether z is the height in most files of this format, as in simulations and surveys. In pictures of molecules
     /// and surface models, y is up.
     pub z_is_up: bool,
+    /// Whether the file is text, which has no zero byte.
+    pub(super) is_text: bool,
     /// Whether the first bytes of a file look like this format.
     pub(super) starts: fn(&[u8]) -> bool,
     pub(super) extra_bytes: fn(&[u8]) -> Result<u64, LoadError>,

@@ -34,3 +34,4 @@ pub use error::{LoadError, LoadErrorKind, Place};
 pub use format::{Format, Options};
 pub use formats::{FORMATS, csv, lammps, mmcif, npy, npz, pdb, raw, xyz};
 pub use open::{Trajectory, from_bytes, open};
+pub use source::open_regular;

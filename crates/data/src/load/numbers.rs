@@ -5,7 +5,7 @@ use std::io::{self, SeekFrom};
 
 use super::error::{LoadError, LoadErrorKind};
 use super::source::Bytes;
-use pinhole::internals::text::{one_line, shortened};
+use pinhole::internals::text::shortened;
 
 /// The error of a file that does not start as its format requires.
 pub(super) fn wrong_start(format: &str, message: impl std::fmt::Display) -> LoadError {
@@ -128,7 +128,7 @@ impl<'a> Reader<'a> {
 /// Returns the text of a file up to the first NUL, to be shown in a message.
 pub(super) fn shown(bytes: &[u8]) -> String {
     let text = bytes.split(|byte| *byte == 0).next().unwrap_or_default();
-    shortened(&one_line(&String::from_utf8_lossy(text)))
+    shortened(&String::from_utf8_lossy(text))
 }
 
 /// Names of the components of a vector, such as `velocity.x`; only the name itself if there is one component.

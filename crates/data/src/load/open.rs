@@ -1,13 +1,13 @@
 //! Opens files of spheres, as a whole or frame by frame, and chooses their format. The topology, a file that describes
 //! the spheres of a trajectory, is opened in the same way.
 
-use std::io::{self, BufRead as _, Read as _};
+use std::io::{self, Read as _};
 use std::path::{Path, PathBuf};
 
 use super::dataset::Dataset;
 use super::error::{LoadError, LoadErrorKind, Place};
 use super::format::{Format, FrameIndex, Frames, Options, ReadMethod, read_from_memory};
-use super::source::{Source, decompressed, is_gzip, without_gz};
+use super::source::{Source, decompressed, is_gzip, start_of};
 use super::topology::Topology;
 
 /// Reads a file of spheres. Its format is the one in the options, or else follows from the extension, or else from the
@@ -18,18 +18,26 @@ use super::topology::Topology;
 pub fn open(path: impl AsRef<Path>, options: &Options) -> Result<Dataset, LoadError> {
     let path = path.as_ref();
     let failed = |error: io::Error| LoadError::from(error).in_file(path);
-    let format = match options.format {
-        Some(format) => Some(format),
-        None => Format::of_path(path).map_err(failed)?,
-    };
-    // Frames are found by seeking, which a pipe cannot do.
-    if let Some(format) = format.filter(|format| format.has_frames() && path.is_file()) {
+    let mut source = Source::open(path).map_err(failed)?;
+    let format = format_of(path, options, &mut source).map_err(|error| error.in_file(path))?;
+    if format.has_frames() {
         let frames = Trajectory::open_up_to(path, &options.clone().with_format(format))?;
         return frames.into_frame(options.frame.unwrap_or_default());
     }
     let mut bytes = Vec::new();
-    Source::open(path).and_then(|mut file| file.read_to_end(&mut bytes)).map_err(failed)?;
-    from_bytes(&bytes, path, options)
+    source.read_to_end(&mut bytes).map_err(failed)?;
+    format.read(&bytes, options)
+}
+
+/// The format of an open file. Compressed data that cannot be of it are refused before they are decompressed.
+fn format_of(path: &Path, options: &Options, source: &mut Source) -> Result<&'static Format, LoadError> {
+    let first = source.start()?;
+    let format = options.format.map_or_else(|| Format::of_file(path, &first), Ok)?;
+    format.check(options)?;
+    if matches!(source, Source::Gzip(_)) {
+        format.check_start(&first)?;
+    }
+    Ok(format)
 }
 
 /// Reads a file of spheres that is in memory. `name` is the name of the file, or empty. Only its extension is used, to
@@ -40,11 +48,7 @@ pub fn open(path: impl AsRef<Path>, options: &Options) -> Result<Dataset, LoadEr
 pub fn from_bytes(bytes: &[u8], name: impl AsRef<Path>, options: &Options) -> Result<Dataset, LoadError> {
     let format = match options.format {
         Some(format) => format,
-        None if is_gzip(bytes) => {
-            let bytes = decompressed(bytes)?;
-            return from_bytes(&bytes, without_gz(name.as_ref()), options);
-        }
-        None => Format::of_file(name.as_ref(), bytes)?,
+        None => Format::of_file(name.as_ref(), &start_of(bytes)?)?,
     };
     format.read(bytes, options)
 }
@@ -57,9 +61,21 @@ impl Format {
     pub fn read(&self, bytes: &[u8], options: &Options) -> Result<Dataset, LoadError> {
         self.check(options)?;
         if is_gzip(bytes) {
+            self.check_start(&start_of(bytes)?)?;
             return self.read_plain(&decompressed(bytes)?, options);
         }
         self.read_plain(bytes, options)
+    }
+
+    /// Refuses compressed data whose first bytes show that they are not of this format.
+    fn check_start(&self, first: &[u8]) -> Result<(), LoadError> {
+        let may_be = match self.is_text {
+            true => !first.contains(&0),
+            false => self.extensions.is_empty() || (self.starts)(first),
+        };
+        let message =
+            || LoadError::new(format!("what is compressed here does not start as the format {} does", self.name));
+        may_be.then_some(()).ok_or_else(message)
     }
 
     /// Reads a file that is not compressed.
@@ -127,14 +143,7 @@ impl Trajectory {
     fn find(path: &Path, options: &Options, last: Option<usize>) -> Result<Self, LoadError> {
         let of_file = |error: LoadError| error.in_file(path);
         let mut source = Source::open(path).map_err(|error| of_file(error.into()))?;
-        let format = match options.format {
-            Some(format) => format,
-            None => {
-                let first = source.fill_buf().map_err(|error| of_file(error.into()))?;
-                Format::of_file(path, first)?
-            }
-        };
-        format.check(options)?;
+        let format = format_of(path, options, &mut source).map_err(of_file)?;
         let ReadMethod::Frames(frames) = format.method else {
             let name = format.name;
             let message = format!("a file of the format {name} has no frames; read it as a whole");

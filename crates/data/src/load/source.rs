@@ -1,8 +1,8 @@
 //! The bytes and the lines of a file, which may be compressed with gzip.
 
 use std::ffi::OsStr;
-use std::fs::File;
-use std::io::{self, BufRead, BufReader, Read, Seek, SeekFrom};
+use std::fs::{File, Metadata};
+use std::io::{self, BufRead, BufReader, Cursor, Read, Seek, SeekFrom};
 use std::ops::Range;
 use std::path::{Path, PathBuf};
 
@@ -16,6 +16,14 @@ const PIECE: usize = 1 << 18;
 /// The same, for readers that visit places far from each other. Longer data are read without a copy.
 const SMALL_PIECE: usize = 1 << 12;
 
+/// Number of first bytes that show the format of data.
+const START: u64 = 1 << 12;
+
+/// A compressed file expands to at most this many times its size, or to [`SMALL`] bytes if that is more. What expands
+/// further was made to fill the memory.
+const EXPANSION: u64 = 100;
+const SMALL: u64 = 1 << 28;
+
 pub(super) trait Bytes: BufRead + Seek {}
 
 impl<T: BufRead + Seek> Bytes for T {}
@@ -25,19 +33,39 @@ impl<T: BufRead + Seek> Bytes for T {}
 #[derive(Debug)]
 pub(super) enum Source {
     Plain(BufReader<File>),
-    Gzip(BufReader<Gunzip<File>>),
+    Gzip(Box<BufReader<Gunzip<File>>>),
+}
+
+/// Opens a regular file. Others, such as pipes and devices, are refused, because reading them might never end.
+///
+/// # Errors
+/// Returns an error if the file cannot be opened or is not a regular one.
+pub fn open_regular(path: &Path) -> io::Result<File> {
+    // Opening a pipe would wait, so its kind is asked before; afterwards the name might be that of another file.
+    let refused = || io::Error::new(io::ErrorKind::InvalidInput, "this is not a regular file; copy it to a file");
+    let regular = |metadata: Metadata| metadata.is_file().then_some(()).ok_or_else(refused);
+    regular(path.metadata()?)?;
+    let file = File::open(path)?;
+    regular(file.metadata()?)?;
+    Ok(file)
 }
 
 impl Source {
-    /// Opens a file. The first bytes show whether it is compressed.
+    /// Opens a regular file. The first bytes show whether it is compressed.
     pub(super) fn open(path: &Path) -> io::Result<Self> {
-        let mut plain = BufReader::with_capacity(PIECE, File::open(path)?);
+        let mut plain = BufReader::with_capacity(PIECE, open_regular(path)?);
         if is_gzip(plain.fill_buf()?) {
-            plain.rewind()?;
-            let gunzip = Gunzip::new(plain.into_inner());
-            return Ok(Self::Gzip(BufReader::with_capacity(PIECE, gunzip)));
+            let gunzip = Gunzip::new(plain.into_inner())?;
+            return Ok(Self::Gzip(Box::new(BufReader::with_capacity(PIECE, gunzip))));
         }
         Ok(Self::Plain(plain))
+    }
+
+    /// Returns the first bytes of the data, and goes back to their start.
+    pub(super) fn start(&mut self) -> io::Result<Vec<u8>> {
+        let first = start_of_plain(&mut *self)?;
+        self.rewind()?;
+        Ok(first)
     }
 
     /// Returns this source, at the start of the file, for a reader that visits places far from each other.
@@ -53,7 +81,7 @@ impl Source {
     fn inner(&mut self) -> &mut dyn Bytes {
         match self {
             Self::Plain(plain) => plain,
-            Self::Gzip(gzip) => gzip,
+            Self::Gzip(gzip) => gzip.as_mut(),
         }
     }
 }
@@ -105,8 +133,19 @@ pub(super) fn is_gzip(bytes: &[u8]) -> bool {
 
 pub(super) fn decompressed(bytes: &[u8]) -> io::Result<Vec<u8>> {
     let mut all = Vec::new();
-    MultiGzDecoder::new(bytes).read_to_end(&mut all)?;
+    Gunzip::new(Cursor::new(bytes))?.read_to_end(&mut all)?;
     Ok(all)
+}
+
+/// The first bytes of data that may be compressed.
+pub(super) fn start_of(bytes: &[u8]) -> io::Result<Vec<u8>> {
+    if is_gzip(bytes) { start_of_plain(MultiGzDecoder::new(bytes)) } else { start_of_plain(bytes) }
+}
+
+fn start_of_plain(data: impl Read) -> io::Result<Vec<u8>> {
+    let mut first = Vec::new();
+    data.take(START).read_to_end(&mut first)?;
+    Ok(first)
 }
 
 /// The decompressed size of a file, from its last four bytes. It is right for a file of one member and less than 4
@@ -122,19 +161,21 @@ pub(super) struct Gunzip<R> {
     decoder: Option<MultiGzDecoder<R>>,
     /// Number of decompressed bytes that were read.
     position: u64,
+    /// Number of decompressed bytes after which the file is refused.
+    most: u64,
 }
 
 impl<R: Read + Seek> Gunzip<R> {
-    /// Decompresses `compressed`, which must be at its start.
-    pub(super) fn new(compressed: R) -> Self {
-        Self { decoder: Some(MultiGzDecoder::new(compressed)), position: 0 }
+    /// Decompresses `compressed` from its start.
+    pub(super) fn new(mut compressed: R) -> io::Result<Self> {
+        let most = compressed.seek(SeekFrom::End(0))?.saturating_mul(EXPANSION).max(SMALL);
+        compressed.rewind()?;
+        Ok(Self { decoder: Some(MultiGzDecoder::new(compressed)), position: 0, most })
     }
 
     fn restart(&mut self) -> io::Result<()> {
         if let Some(decoder) = self.decoder.take() {
-            let mut compressed = decoder.into_inner();
-            compressed.rewind()?;
-            *self = Self::new(compressed);
+            *self = Self::new(decoder.into_inner())?;
         }
         Ok(())
     }
@@ -151,6 +192,12 @@ impl<R: Read> Read for Gunzip<R> {
     fn read(&mut self, buffer: &mut [u8]) -> io::Result<usize> {
         let read = self.decoder.as_mut().map_or(Ok(0), |decoder| decoder.read(buffer))?;
         self.position += read as u64;
+        if self.position > self.most {
+            let message = format!(
+                "it expands to more than {EXPANSION} times its size; decompress it with gunzip first, if you trust it"
+            );
+            return Err(io::Error::new(io::ErrorKind::InvalidData, message));
+        }
         Ok(read)
     }
 }
@@ -246,7 +293,7 @@ impl<'a> LineReader<'a> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use std::io::{Cursor, Write as _};
+    use std::io::Write as _;
 
     use flate2::Compression;
     use flate2::write::GzEncoder;
@@ -273,7 +320,7 @@ mod tests {
         assert!(is_gzip(&file));
         assert_eq!(decompressed(&file).unwrap(), bytes);
         assert_eq!(gzip_size_hint(&compressed(&bytes)), 400_000);
-        let mut gunzip = BufReader::new(Gunzip::new(Cursor::new(file)));
+        let mut gunzip = BufReader::new(Gunzip::new(Cursor::new(file)).unwrap());
         for at in [300_000_u64, 17, 399_996, 0, 123_456] {
             gunzip.seek(SeekFrom::Start(at)).unwrap();
             assert_eq!(gunzip.stream_position().unwrap(), at);
@@ -286,11 +333,20 @@ mod tests {
     }
 
     #[test]
+    fn what_expands_too_far_is_refused() {
+        let mut gunzip = Gunzip::new(Cursor::new(compressed(&[b'\n'; 100_000]))).unwrap();
+        assert_eq!(gunzip.most, SMALL);
+        gunzip.most = 10_000;
+        let error = gunzip.read_to_end(&mut Vec::new()).unwrap_err().to_string();
+        assert!(error.starts_with("it expands to more than 100 times its size; "), "{error}");
+    }
+
+    #[test]
     fn a_damaged_file_is_an_error() {
         let mut file = compressed(&[7; 1000]);
         file.truncate(file.len() - 6);
         let mut all = Vec::new();
         assert!(decompressed(&file).is_err());
-        assert!(Gunzip::new(Cursor::new(file)).read_to_end(&mut all).is_err());
+        assert!(Gunzip::new(Cursor::new(file)).unwrap().read_to_end(&mut all).is_err());
     }
 }

@@ -1,8 +1,11 @@
 //! Files of spheres and their contents, files that are refused, and damaged files of every format.
 
+use std::io::Write as _;
 use std::path::{Path, PathBuf};
 
 use fastrand::Rng;
+use flate2::Compression;
+use flate2::write::GzEncoder;
 use pinhole::scene::sphere_array::SphereArray;
 use pinhole::{LinearRgb, Sphere};
 use pinhole_data::load::{self, ColumnValues, Dataset, FORMATS, Format, Labels, Options};
@@ -123,6 +126,26 @@ fn every_format_has_good_files() {
             let loaded = loaded.unwrap_or_else(|e| panic!("{} {index}: {e}", format.name));
             assert!(!loaded.spheres.is_empty(), "{} {index}", format.name);
         }
+    }
+}
+
+/// Zeros that are compressed are refused by the first of them, and what is no regular file before it is opened.
+#[test]
+fn bombs_and_special_files_are_refused_at_once() {
+    let folder = TempDir::new().unwrap();
+    let mut gzip = GzEncoder::new(Vec::new(), Compression::fast());
+    gzip.write_all(&[0; 1 << 22]).unwrap();
+    let bomb = gzip.finish().unwrap();
+    for format in FORMATS.iter().filter(|format| !format.extensions.is_empty()) {
+        let path = folder.path().join(format!("a.{}.gz", format.extensions[0]));
+        std::fs::write(&path, &bomb).unwrap();
+        let errors = [load::open(&path, &Options::default()), load::from_bytes(&bomb, &path, &Options::default())];
+        for error in errors.map(|read| read.unwrap_err().to_string()) {
+            assert_eq!(error, format!("what is compressed here does not start as the format {} does", format.name));
+        }
+        let special = if cfg!(unix) { Path::new("/dev/zero") } else { folder.path() };
+        let error = load::open(special, &Options::default().with_format(format)).unwrap_err().to_string();
+        assert!(error.ends_with(": cannot be read: this is not a regular file; copy it to a file"), "{error}");
     }
 }
 

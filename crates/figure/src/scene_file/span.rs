@@ -5,7 +5,7 @@ use std::fmt;
 
 use pinhole::camera::CameraKind;
 use pinhole::image::color::LinearRgb;
-use pinhole::internals::text::{one_line, shortened};
+use pinhole::internals::text::{shortened, whole_line};
 use pinhole::range::RangeError;
 use pinhole::render::{BRIGHTEST, SettingsError};
 
@@ -199,7 +199,7 @@ fn nearest<'a>(name: &str, known: &[&'a str]) -> Option<&'a str> {
 
 /// Replaces Rust's names of types, and serde's term for a key, by plain words.
 fn in_plain_words(message: &str) -> String {
-    let mut text = one_line(message);
+    let mut text = whole_line(message);
     for (rust, plain) in [
         ("expected f64", "expected a number"),
         ("expected f32", "expected a number"),

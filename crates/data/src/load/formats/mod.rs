@@ -2,7 +2,6 @@
 //! which options apply to the format.
 
 use std::io;
-use std::io::Read as _;
 use std::path::Path;
 
 use crate::load::dataset::Dataset;
@@ -36,9 +35,13 @@ const RAW: Format = Format {
     may_lack_radii: false,
     has_colors: false,
     z_is_up: false,
+    is_text: false,
     starts: |_| false,
     extra_bytes: |_| Ok(0),
 };
+
+/// The same for text.
+const TEXT: Format = Format { is_text: true, ..RAW };
 
 /// All formats that this build can read. No two of them share a name or an extension.
 pub static FORMATS: &[Format] = &[
@@ -50,7 +53,7 @@ pub static FORMATS: &[Format] = &[
         may_lack_radii: true,
         has_colors: true,
         starts: xyz::starts,
-        ..RAW
+        ..TEXT
     },
     Format {
         name: "extxyz",
@@ -59,7 +62,7 @@ pub static FORMATS: &[Format] = &[
         method: ReadMethod::Frames(xyz::FRAMES),
         may_lack_radii: true,
         has_colors: true,
-        ..RAW
+        ..TEXT
     },
     Format {
         name: "pdb",
@@ -68,7 +71,7 @@ pub static FORMATS: &[Format] = &[
         method: ReadMethod::Frames(pdb::FRAMES),
         has_colors: true,
         starts: pdb::starts,
-        ..RAW
+        ..TEXT
     },
     Format {
         name: "lammps-dump",
@@ -79,7 +82,7 @@ pub static FORMATS: &[Format] = &[
         may_lack_radii: true,
         z_is_up: true,
         starts: lammps::dump::starts,
-        ..RAW
+        ..TEXT
     },
     Format {
         name: "lammps-data",
@@ -90,7 +93,7 @@ pub static FORMATS: &[Format] = &[
         may_lack_radii: true,
         z_is_up: true,
         starts: lammps::data::starts,
-        ..RAW
+        ..TEXT
     },
     Format {
         name: "mmcif",
@@ -99,7 +102,7 @@ pub static FORMATS: &[Format] = &[
         method: ReadMethod::Frames(mmcif::FRAMES),
         has_colors: true,
         starts: mmcif::starts,
-        ..RAW
+        ..TEXT
     },
     Format {
         name: "las",
@@ -176,7 +179,7 @@ pub static FORMATS: &[Format] = &[
         may_lack_names: true,
         may_lack_radii: true,
         starts: csv::starts,
-        ..RAW
+        ..TEXT
     },
     Format {
         name: "ply",
@@ -224,14 +227,11 @@ impl Format {
     /// # Errors
     /// Returns an error if the first bytes are needed and cannot be read.
     pub fn of_path(path: &Path) -> io::Result<Option<&'static Self>> {
-        const FIRST_BYTES: u64 = 1 << 12;
         let format = Self::of_file_name(path);
         if format.is_some() || !path.is_file() {
             return Ok(format);
         }
-        let mut first = Vec::new();
-        Source::open(path)?.take(FIRST_BYTES).read_to_end(&mut first)?;
-        Ok(Self::of_content(&first))
+        Ok(Self::of_content(&Source::open(path)?.start()?))
     }
 
     /// Returns the format with the extension of a file's name, without `.gz`.

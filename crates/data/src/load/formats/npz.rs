@@ -58,7 +58,7 @@ pub fn read(bytes: &[u8], radius: Option<f64>) -> Result<Dataset, LoadError> {
         }
         let data = entry.contents(&archive)?;
         let array = Array::open(&data).map_err(of_array(&entry.name))?;
-        let name = shortened(&one_line(&entry.name));
+        let name = shortened(&entry.name);
         if array.rows() != count || !array.has_rows() {
             unused.push(format!("`{name}` has the shape {}", array.shape()));
             continue;
@@ -211,11 +211,11 @@ fn broken(error: &impl ToString) -> LoadError {
 
 /// Puts the name of an array before an error.
 pub(super) fn of_array(name: &str) -> impl Fn(LoadError) -> LoadError {
-    let name = shortened(&one_line(name));
+    let name = shortened(name);
     move |error| LoadError { place: Place::Array(name.clone()), message: error.to_string(), ..error }
 }
 
 /// Lists the names of arrays on one line, however many there are.
 fn listed(entries: &[Entry]) -> String {
-    first_names(entries.iter().map(|entry| format!("`{}`", shortened(&one_line(&entry.name)))))
+    first_names(entries.iter().map(|entry| format!("`{}`", shortened(&entry.name))))
 }

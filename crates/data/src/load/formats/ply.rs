@@ -153,7 +153,7 @@ fn of_binary(data: &[u8], header: &Header, vertex: usize) -> Result<Vec<TableCol
 }
 
 fn shown(value: &[u8]) -> String {
-    shortened(&one_line(&String::from_utf8_lossy(value)))
+    shortened(&String::from_utf8_lossy(value))
 }
 
 fn too_few_lines(Element { name, count, .. }: &Element, found: u64) -> LoadError {
@@ -296,22 +296,22 @@ fn read_header(bytes: &[u8]) -> Result<Header, LoadError> {
                     _ => {
                         return Err(refused(format!(
                             "the format `{}` is not one of ascii, binary_little_endian, binary_big_endian",
-                            shortened(&one_line(name))
+                            shortened(name)
                         )));
                     }
                 };
                 if version != "1.0" {
-                    let version = shortened(&one_line(version));
+                    let version = shortened(version);
                     return Err(refused(format!("the version `{version}` is not 1.0")));
                 }
                 encoding = Some(wanted);
             }
             ["element", name, count] => {
                 let count = count.parse().map_err(|_| {
-                    let count = shortened(&one_line(count));
+                    let count = shortened(count);
                     refused(format!("`{count}` is not a valid number of elements"))
                 })?;
-                let name = shortened(&one_line(name));
+                let name = shortened(name);
                 elements.push(Element { name, count, properties: Vec::new() });
             }
             ["property", ref words @ ..] => {
@@ -325,7 +325,7 @@ fn read_header(bytes: &[u8]) -> Result<Header, LoadError> {
                         refused(format!(
                             "`{}` is not a type of PLY; these are char, uchar, short, ushort, int, uint, float, double, \
                              and int8 to uint32, float32 and float64",
-                            shortened(&one_line(name))
+                            shortened(name)
                         ))
                     })
                 };
@@ -343,7 +343,7 @@ fn read_header(bytes: &[u8]) -> Result<Header, LoadError> {
                 return Err(refused(format!(
                     "`{}` is not a line of a PLY header, which are format, comment, obj_info, element, property, \
                      end_header",
-                    shortened(&one_line(&text))
+                    shortened(&text)
                 )));
             }
         }

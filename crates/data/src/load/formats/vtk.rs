@@ -88,7 +88,7 @@ fn columns(document: &Document<'_>, notes: &mut Vec<String>) -> Result<Vec<Table
                     append(&mut groups[at + 1], more, index, name)?;
                 }
                 None => {
-                    let name = shortened(&one_line(name));
+                    let name = shortened(name);
                     notes.push(format!("not used: the array {name}, which piece {index} lacks"));
                     kept.remove(at);
                     groups.remove(at + 1);
@@ -137,7 +137,7 @@ fn group(document: &Document<'_>, piece: usize, array: &Array<'_>, name: &str) -
 }
 
 fn in_array(piece: usize, name: &str, message: &str) -> LoadError {
-    let name = shortened(&one_line(name));
+    let name = shortened(name);
     LoadError::at(Place::Piece(piece), format!("the array {name}: {message}"))
 }
 
@@ -210,7 +210,7 @@ fn of_text(text: &str, array: &Array<'_>, count: usize) -> Result<Vec<Vec<f64>>,
         let word = words.next();
         let word = word.ok_or_else(|| format!("it must have {count} numbers, but has {index}"))?;
         let number = array.scalar.parse(word).ok_or_else(|| {
-            format!("number {index}, counted from 0, is `{}`, which is not a number", shortened(&one_line(word)))
+            format!("number {index}, counted from 0, is `{}`, which is not a number", shortened(word))
         })?;
         columns[index % components].push(number);
     }

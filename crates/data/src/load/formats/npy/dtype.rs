@@ -5,7 +5,7 @@ use std::collections::HashMap;
 use crate::load::dataset::Labels;
 use crate::load::numbers::{Number, Order, Scalar};
 use crate::load::table::TableColumn;
-use pinhole::internals::text::{one_line, shortened};
+use pinhole::internals::text::shortened;
 
 /// The type of the elements of an array, such as `<f4`.
 #[derive(Clone, Debug, PartialEq, Eq)]
@@ -119,7 +119,7 @@ impl Dtype {
             }
             _ => String::from_utf8_lossy(bytes.split(|byte| *byte == 0).next().unwrap_or_default()).into_owned(),
         };
-        shortened(&one_line(&text))
+        shortened(&text)
     }
 
     fn labels<'a>(&self, values: impl Iterator<Item = &'a [u8]>) -> Labels {

@@ -9,7 +9,7 @@ use py_literal::Value;
 use super::dtype::Dtype;
 use crate::load::error::{LoadError, LoadErrorKind};
 use crate::load::numbers::component_names;
-use pinhole::internals::text::{one_line, shortened};
+use pinhole::internals::text::shortened;
 
 const MAGIC: &[u8] = b"\x93NUMPY";
 
@@ -106,7 +106,7 @@ fn add_fields(
                     let size = dtype.size;
                     // A field without a name only fills a gap.
                     if !name.is_empty() {
-                        let name = shortened(&one_line(&full));
+                        let name = shortened(&full);
                         fields.push(Field { name, dtype, offset });
                     }
                     offset = offset.checked_add(size).ok_or_else(bad)?;
@@ -158,7 +158,7 @@ fn parse(text: &str) -> Result<Header, String> {
     if depth(text) > MAX_DEPTH {
         return Err(format!("has brackets nested more than {MAX_DEPTH} levels deep"));
     }
-    let not_a_dictionary = || format!("is not a valid Python dictionary: `{}`", shortened(&one_line(text)));
+    let not_a_dictionary = || format!("is not a valid Python dictionary: `{}`", shortened(text));
     let Ok(Value::Dict(entries)) = text.trim_end().parse() else { return Err(not_a_dictionary()) };
     let value = |name: &str| {
         let mut named = entries.iter().filter(|(key, _)| key.as_string().is_some_and(|k| k == name));

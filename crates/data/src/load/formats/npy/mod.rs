@@ -14,7 +14,7 @@ use crate::load::numbers::component_names;
 use crate::load::table::{Table, TableColumn};
 use dtype::{Dtype, Place};
 use header::{Elements, Header};
-use pinhole::internals::text::{one_line, shortened};
+use pinhole::internals::text::shortened;
 use pinhole::scene::sphere_array::SphereArray;
 
 /// Names of the columns of plain arrays with 3 to 7 columns.
@@ -195,7 +195,7 @@ impl<'a> Array<'a> {
             };
         };
         if !dtype.is_column() {
-            return Err(format!("has the type {}", shortened(&one_line(&dtype.name))));
+            return Err(format!("has the type {}", shortened(&dtype.name)));
         }
         match *self.header.shape {
             [_] => Ok(self.matrix(dtype, [name.to_owned()].into_iter())),
@@ -235,7 +235,7 @@ impl<'a> Array<'a> {
 fn no_numbers(dtype: &str) -> LoadError {
     LoadError::new(format!(
         "the array has the type {}, but it must be of floating-point numbers or integers; save it as a.astype('float32')",
-        shortened(&one_line(dtype))
+        shortened(dtype)
     ))
 }
 

@@ -8,7 +8,7 @@ use crate::load::formats::npz::{array_of, of_array};
 use pinhole::camera::film::Film;
 use pinhole::geometry::ray::Ray;
 use pinhole::image::NO_ID;
-use pinhole::internals::text::{one_line, shortened};
+use pinhole::internals::text::shortened;
 
 /// One value for each pixel, row by row from the top.
 #[derive(Clone, Debug, PartialEq)]
@@ -50,7 +50,7 @@ impl Array<'_> {
             matches!(order, "<" | ">") && names.contains(&rest)
         };
         self.dtype.as_ref().filter(is_one).ok_or_else(|| {
-            let found = shortened(&one_line(&self.header.elements.name()));
+            let found = shortened(&self.header.elements.name());
             LoadError::new(format!("the array has the type {found}, but {wanted}"))
         })
     }

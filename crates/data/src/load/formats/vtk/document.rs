@@ -215,7 +215,7 @@ impl<'a> Parser<'a> {
                 Some(value) if value == known[1] => Ok(true),
                 Some(value) => Err(Problem::Message(format!(
                     "{name} is `{}`, but it must be {} or {}",
-                    shortened(&one_line(value)),
+                    shortened(value),
                     known[0],
                     known[1]
                 ))),
@@ -231,14 +231,14 @@ impl<'a> Parser<'a> {
             let advice = if is_list { "; name one of the files that it lists" } else { "" };
             return Err(Problem::Error(LoadError::new(format!(
                 "the file is of the type {}, but only PolyData (.vtp) and UnstructuredGrid (.vtu) can be read{advice}",
-                shortened(&one_line(&kind))
+                shortened(&kind)
             ))));
         }
         match attribute(element, "compressor")?.as_deref() {
             None | Some("") => {}
             Some("vtkZLibDataCompressor") => encoding.is_compressed = true,
             Some(found) => {
-                let found = shortened(&one_line(found));
+                let found = shortened(found);
                 return Err(Problem::Error(LoadError::new(format!(
                     "the data are compressed with {found}, but only vtkZLibDataCompressor can be read; save the file with \
                      zlib or without compression"
@@ -296,7 +296,7 @@ fn attribute(element: &BytesStart<'_>, name: &str) -> Result<Option<String>, Pro
 fn number(element: &BytesStart<'_>, name: &str) -> Result<Option<u64>, Problem> {
     let parsed = attribute(element, name)?.map(|text| {
         text.trim().parse().map_err(|_| {
-            let text = shortened(&one_line(&text));
+            let text = shortened(&text);
             Problem::Message(format!("{name} is `{text}`, which is not a valid number"))
         })
     });
@@ -308,14 +308,14 @@ fn array<'a>(element: &BytesStart<'_>) -> Result<Result<Array<'a>, String>, Prob
     let name = attribute(element, "Name")?.unwrap_or_default();
     let shown = match name.is_empty() {
         true => "without a name".to_owned(),
-        false => shortened(&one_line(&name)),
+        false => shortened(&name),
     };
     let kind = attribute(element, "type")?.unwrap_or_default();
     let Some(scalar) = scalar_of_name(&kind) else {
         if kind == "String" {
             return Ok(Err(format!("the array {shown}, which is text")));
         }
-        let kind = shortened(&one_line(&kind));
+        let kind = shortened(&kind);
         return Err(Problem::Message(format!(
             "the array {shown} has the type `{kind}`, but it must be Int8 to UInt64, Float32 or Float64"
         )));
@@ -335,7 +335,7 @@ fn array<'a>(element: &BytesStart<'_>) -> Result<Result<Array<'a>, String>, Prob
         Some(other) => {
             return Err(Problem::Message(format!(
                 "the array {shown} has the format `{}`, but it must be ascii, binary or appended",
-                shortened(&one_line(other))
+                shortened(other)
             )));
         }
     };
