@@ -19,7 +19,7 @@ use crate::verify::studio::forward::PixelLight;
 const LEAST_ALBEDO: f64 = 0.01_f32 as f64;
 
 /// Light about which nothing is known.
-const ANY_LIGHT: Interval = Interval { low: 0.0, high: 1e6 };
+const ANY_LIGHT: Interval = Interval { low: -1e30, high: 1e30 };
 
 /// What the ray through the centre of a pixel hits, if there is a single legal answer.
 #[derive(Clone, Copy, Debug)]
@@ -128,7 +128,7 @@ fn without_noise(size: [u32; 2], lights: &[Option<PixelLight>], spots: &[Option<
         let unknown = PixelLight {
             color: [ANY_LIGHT; 3],
             albedo: [Interval { low: 0.0, high: 1.0 + 4.0 * U }; 3],
-            variance: ANY_LIGHT,
+            variance: Interval { low: 0.0, ..ANY_LIGHT },
         };
         let light = light.as_ref().unwrap_or(&unknown);
         let albedo = divisors(light);
