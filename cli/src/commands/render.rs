@@ -17,6 +17,7 @@ use crate::terminal::failure::Failure;
 use crate::terminal::profile;
 use crate::terminal::progress::{self, answer, tell};
 use crate::terminal::threads;
+use pinhole::image::LayerSet;
 
 pub(crate) fn run(args: &RenderArgs) -> Result<(), Failure> {
     #[cfg(feature = "gpu")]
@@ -49,6 +50,12 @@ fn run_measured(args: &RenderArgs) -> Result<(), Failure> {
     }
     if quiet {
         progress::close();
+    }
+    if args.certify && job.outputs.inside != LayerSet::COLOR {
+        return Err(Failure::usage(
+            "--certify: layers in the file of the picture are not judged; write them to files of their own, such as \
+             --layer depth=depth.npy",
+        ));
     }
     let note = progress::notes(quiet);
     threads::start()?;

@@ -30,6 +30,7 @@ fn with_text(png: &[u8], change: impl Fn(&str) -> String) -> Vec<u8> {
     let mut encoder = png::Encoder::new(&mut bytes, info.width, info.height);
     encoder.set_color(info.color_type);
     encoder.set_depth(info.bit_depth);
+    encoder.set_source_srgb(png::SrgbRenderingIntent::RelativeColorimetric);
     encoder.add_text_chunk(text.keyword.clone(), change(&text.text)).unwrap();
     let mut writer = encoder.write_header().unwrap();
     writer.write_image_data(&samples).unwrap();
@@ -45,7 +46,7 @@ fn a_picture_is_checked_with_the_scene_alone() {
         ("scene.toml", "--bits 16 --exposure -0.5 --tone agx", "b.png"),
         ("scene.toml", "--transparent --size 40x40", "c.png"),
         ("data.csv", "--style fast --view -x --color teal", "d.png"),
-        ("scene.toml", "--layer depth", "e.exr"),
+        ("scene.toml", "--layer depth=depth.npy", "e.exr"),
     ] {
         let flags = format!("{flags} --backend cpu --quiet");
         folder.run(&format!("render {scene} -o {picture} --certify {flags}")).succeeded();
@@ -225,9 +226,13 @@ fn what_was_changed_is_refused() {
     let edited = with_text(&a, |text| text.replace("outcome proved", "outcome Proved"));
     let newer = with_text(&a, |text| text.replace("pinhole-certificate 2", "pinhole-certificate 9"));
     let unknown = with_text(&b, |text| resealed(&text.replace("setting exposure 0.4\n", "")));
-    for (name, bytes) in
-        [("other.png", other), ("edited.png", edited), ("newer.png", newer), ("cut.png", a[..a.len() / 2].to_vec())]
-    {
+    for (name, bytes) in [
+        ("other.png", other),
+        ("edited.png", edited),
+        ("newer.png", newer),
+        ("cut.png", a[..a.len() / 2].to_vec()),
+        ("long.png", [&a[..], b"more"].concat()),
+    ] {
         std::fs::write(folder.path(name), bytes).unwrap();
     }
     let changed = SCENE.replace("radius = 0.5", "radius = 0.51");
@@ -237,6 +242,7 @@ fn what_was_changed_is_refused() {
         ("edited.png", "scene.toml", "the picture's certificate was edited"),
         ("newer.png", "scene.toml", "the picture's certificate has the version 9"),
         ("cut.png", "scene.toml", "the PNG file cannot be read: "),
+        ("long.png", "scene.toml", "data follow its end, so that viewers may show another picture; "),
         ("plain.png", "scene.toml", "the picture has no certificate; render it with --certify"),
         ("a.png", "changed.toml", "the certificate is of other data than changed.toml"),
         ("a.png", "data.csv", "the certificate is of other data than data.csv"),

@@ -15,7 +15,8 @@
 //! | `variance` | f32 | variance |
 //!
 //! The attributes are `software`, and `adapter` if the adapter that rendered is known. A certified picture has its
-//! certificate in the attribute [`CERTIFICATE`].
+//! certificate, which names both, in the attribute [`CERTIFICATE`] in their place. It is not compressed, so that each byte
+//! of its file can be checked.
 
 use std::io::{self, Seek, Write};
 
@@ -59,30 +60,45 @@ pub fn write(
     remarks: Remarks<'_>,
     mut sink: impl Write + Seek,
 ) -> Result<(), ExrError> {
-    let size = Vec2(picture.width() as usize, picture.height() as usize);
-    let mut attributes = LayerAttributes {
-        software_name: Text::new_or_none(concat!("pinhole ", env!("CARGO_PKG_VERSION"))),
-        ..LayerAttributes::default()
+    let size = [picture.width() as usize, picture.height() as usize];
+    write_planes(size, planes(picture, layers, encoding.transparent)?, remarks, &mut sink)?;
+    Ok(sink.flush()?)
+}
+
+/// Encodes a certified picture from the samples of its file: red, green, blue and alpha.
+pub(crate) fn encode_certified(size: [usize; 2], pixels: &[[f32; 4]], certificate: &str) -> Result<Vec<u8>, ExrError> {
+    let mut bytes = io::Cursor::new(Vec::with_capacity(pixels.len() * 17));
+    let remarks = Remarks { adapter: None, certificate: Some(certificate) };
+    write_planes(size, components(["R", "G", "B", "A"], pixels), remarks, &mut bytes)?;
+    Ok(bytes.into_inner())
+}
+
+fn write_planes(
+    [width, height]: [usize; 2],
+    planes: Vec<Plane<'_>>,
+    remarks: Remarks<'_>,
+    sink: &mut (impl Write + Seek),
+) -> Result<(), ExrError> {
+    let mut attributes = LayerAttributes::default();
+    let mut add = |name, text| attributes.other.insert(latin(name), AttributeValue::Text(latin(text)));
+    let compression = if let Some(certificate) = remarks.certificate {
+        add(CERTIFICATE, certificate);
+        Compression::Uncompressed
+    } else {
+        remarks.adapter.map(|adapter| add("adapter", adapter));
+        attributes.software_name = Text::new_or_none(concat!("pinhole ", env!("CARGO_PKG_VERSION")));
+        Compression::ZIP16
     };
-    let texts = [("adapter", remarks.adapter), (CERTIFICATE, remarks.certificate)];
-    for (name, text) in texts {
-        if let Some(text) = text {
-            attributes.other.insert(latin(name), AttributeValue::Text(latin(text)));
-        }
-    }
-    let storage =
-        Storage { compression: Compression::ZIP16, blocks: Blocks::ScanLines, line_order: LineOrder::Increasing };
-    let width = size.0;
-    let channels = planes(picture, layers, encoding.transparent)?.into_iter().map(|(name, samples)| AnyChannel {
+    let storage = Storage { compression, blocks: Blocks::ScanLines, line_order: LineOrder::Increasing };
+    let channels = planes.into_iter().map(|(name, samples)| AnyChannel {
         name: latin(name),
         sample_data: Channel { samples, width },
         quantize_linearly: false,
         sampling: Vec2(1, 1),
     });
     let channels = AnyChannels::sort(channels.collect());
-    let image = ExrImage::from_layer(ExrLayer::new(size, attributes, storage, channels));
-    image.write().to_buffered(&mut sink)?;
-    Ok(sink.flush()?)
+    let image = ExrImage::from_layer(ExrLayer::new(Vec2(width, height), attributes, storage, channels));
+    Ok(image.write().to_buffered(sink)?)
 }
 
 /// An error of writing an OpenEXR file.
@@ -127,7 +143,7 @@ type Plane<'a> = (&'static str, Samples<'a>);
 fn planes(picture: &Image, layers: LayerSet, transparent: bool) -> Result<Vec<Plane<'_>>, ExrError> {
     let missing = |layer| ExrError::MissingLayer { layer };
     let alpha = match transparent {
-        true => Samples::Numbers(picture.alpha().ok_or(missing(Layer::Alpha))?),
+        true => numbers(picture.alpha().ok_or(missing(Layer::Alpha))?),
         false => Samples::One,
     };
     let mut planes = vec![("A", alpha)];
@@ -140,21 +156,27 @@ fn planes(picture: &Image, layers: LayerSet, transparent: bool) -> Result<Vec<Pl
 /// Returns the channels of a layer, or `None` if the picture does not have the layer.
 fn planes_of(picture: &Image, layer: Layer) -> Option<Vec<Plane<'_>>> {
     let planes = match layer {
-        Layer::Color => vectors(["R", "G", "B"], picture.color()),
-        Layer::Alpha => vec![("coverage", Samples::Numbers(picture.alpha()?))],
-        Layer::Depth => vec![("Z", Samples::Numbers(picture.depth()?))],
-        Layer::Normal => vectors(["N.X", "N.Y", "N.Z"], picture.normal()?),
-        Layer::Position => vectors(["P.X", "P.Y", "P.Z"], picture.position()?),
-        Layer::Albedo => vectors(["albedo.R", "albedo.G", "albedo.B"], picture.albedo()?),
+        Layer::Color => components(["R", "G", "B"], picture.color()),
+        Layer::Alpha => vec![("coverage", numbers(picture.alpha()?))],
+        Layer::Depth => vec![("Z", numbers(picture.depth()?))],
+        Layer::Normal => components(["N.X", "N.Y", "N.Z"], picture.normal()?),
+        Layer::Position => components(["P.X", "P.Y", "P.Z"], picture.position()?),
+        Layer::Albedo => components(["albedo.R", "albedo.G", "albedo.B"], picture.albedo()?),
         Layer::Id => vec![("id", Samples::Counts(picture.id()?))],
         Layer::Samples => vec![("samples", Samples::Counts(picture.samples()?))],
-        Layer::Variance => vec![("variance", Samples::Numbers(picture.variance()?))],
+        Layer::Variance => vec![("variance", numbers(picture.variance()?))],
     };
     Some(planes)
 }
 
-fn vectors<'a>(names: [&'static str; 3], values: &'a [[f32; 3]]) -> Vec<Plane<'a>> {
-    names.into_iter().enumerate().map(|(index, name)| (name, Samples::Components(values, index))).collect()
+fn numbers(values: &[f32]) -> Samples<'_> {
+    Samples::Numbers { values, step: 1 }
+}
+
+fn components<'a, const N: usize>(names: [&'static str; N], values: &'a [[f32; N]]) -> Vec<Plane<'a>> {
+    let values = values.as_flattened();
+    let samples = |first| Samples::Numbers { values: values.get(first..).unwrap_or_default(), step: N };
+    names.into_iter().enumerate().map(|(first, name)| (name, samples(first))).collect()
 }
 
 /// The samples of a channel, borrowed from the picture.
@@ -162,8 +184,11 @@ fn vectors<'a>(names: [&'static str; 3], values: &'a [[f32; 3]]) -> Vec<Plane<'a
 enum Samples<'a> {
     /// The number 1 for every pixel.
     One,
-    Numbers(&'a [f32]),
-    Components(&'a [[f32; 3]], usize),
+    /// The first of every `step` numbers.
+    Numbers {
+        values: &'a [f32],
+        step: usize,
+    },
     Counts(&'a [u32]),
 }
 
@@ -200,8 +225,7 @@ impl SamplesWriter for Channel<'_> {
         // Writing cannot fail, because the line's memory has the length of its samples.
         let _ = match self.samples {
             Samples::One => line.write_samples(|_| 1.0_f32),
-            Samples::Numbers(values) => line.write_samples(|i| values[start + i]),
-            Samples::Components(values, index) => line.write_samples(|i| values[start + i][index]),
+            Samples::Numbers { values, step } => line.write_samples(|i| values[(start + i) * step]),
             Samples::Counts(values) => line.write_samples(|i| values[start + i]),
         };
     }

@@ -121,32 +121,40 @@ pub fn encode_rgba8(size: [u32; 2], rgba: &[u8]) -> Result<Vec<u8>, PngError> {
 }
 
 fn write(
-    [width, height]: [u32; 2],
-    (color, depth): (ColorType, BitDepth),
+    size: [u32; 2],
+    kind: (ColorType, BitDepth),
     dots_per_inch: Option<f32>,
     certificate: Option<&str>,
     samples: &[u8],
 ) -> Result<Vec<u8>, PngError> {
+    // PNG counts pixels per metre; an inch is 0.0254 m.
+    let per_metre = dots_per_inch.map(|dots| (f64::from(dots) / 0.0254).round() as u32);
     let mut bytes = Vec::new();
-    let mut encoder = png::Encoder::new(&mut bytes, width, height);
+    let mut writer = begin(&mut bytes, size, kind, per_metre, certificate)?;
+    writer.write_image_data(samples)?;
+    writer.finish()?;
+    Ok(bytes)
+}
+
+/// Writes everything that comes before the samples. A writer that is dropped writes the end of the file.
+pub(crate) fn begin<'a>(
+    bytes: &'a mut Vec<u8>,
+    [width, height]: [u32; 2],
+    (color, depth): (ColorType, BitDepth),
+    per_metre: Option<u32>,
+    certificate: Option<&str>,
+) -> Result<png::Writer<&'a mut Vec<u8>>, PngError> {
+    let mut encoder = png::Encoder::new(bytes, width, height);
     encoder.set_color(color);
     encoder.set_depth(depth);
     encoder.set_compression(Compression::Fast);
     encoder.set_filter(Filter::Adaptive);
     encoder.set_source_srgb(SrgbRenderingIntent::RelativeColorimetric);
-    // PNG counts pixels per metre; an inch is 0.0254 m.
-    encoder.set_pixel_dims(dots_per_inch.map(|dots| {
-        let per_metre = (f64::from(dots) / 0.0254).round() as u32;
-        PixelDimensions { xppu: per_metre, yppu: per_metre, unit: Unit::Meter }
-    }));
-    let failed = |error: png::EncodingError| PngError::Encoder { message: error.to_string() };
+    encoder.set_pixel_dims(per_metre.map(|count| PixelDimensions { xppu: count, yppu: count, unit: Unit::Meter }));
     if let Some(certificate) = certificate {
-        encoder.add_text_chunk(CERTIFICATE.into(), certificate.into()).map_err(failed)?;
+        encoder.add_text_chunk(CERTIFICATE.into(), certificate.into())?;
     }
-    let mut writer = encoder.write_header().map_err(failed)?;
-    writer.write_image_data(samples).map_err(failed)?;
-    writer.finish().map_err(failed)?;
-    Ok(bytes)
+    Ok(encoder.write_header()?)
 }
 
 /// An error of encoding a PNG file.
@@ -162,6 +170,12 @@ pub enum PngError {
         /// The message of the encoder.
         message: String,
     },
+}
+
+impl From<png::EncodingError> for PngError {
+    fn from(error: png::EncodingError) -> Self {
+        Self::Encoder { message: error.to_string() }
+    }
 }
 
 /// The pixels of a picture, with their encoding.

@@ -11,6 +11,7 @@ use pinhole::image::encoding::{Bits, Encoding};
 use pinhole::image::{Layer, NO_ID, color};
 use pinhole::render::{Integrator, Outline, Studio};
 use pinhole::{Image, LayerSet, LinearRgb, RenderSettings, ToneCurve, cpu};
+use pinhole_figure::read::picture::read;
 use pinhole_figure::write::exr::ExrError;
 use pinhole_figure::write::{exr as exr_file, npy, png as png_file};
 
@@ -310,6 +311,152 @@ fn a_sink_that_fails_is_an_error() {
             };
             assert_eq!(kind, std::io::ErrorKind::StorageFull, "{room}");
         }
+    }
+}
+
+const CERTIFICATE: &str = "the text of a certificate\n";
+
+/// Certified pictures of 6x4 pixels: PNG files of two kinds, and an OpenEXR file.
+fn certified() -> [Vec<u8>; 3] {
+    let mut deep = Encoding::default().with_dots_per_inch(Some(300.0)).unwrap();
+    let [plain_file, deep_file] = [(Bits::Eight, false, 72), (Bits::Sixteen, true, 192)].map(|(bits, clear, count)| {
+        (deep.bits, deep.transparent) = (bits, clear);
+        let samples: Vec<u8> = (0..count).map(|i: u8| i.wrapping_mul(31) ^ 5).collect();
+        png_file::encode_certified([6, 4], &deep, &samples, CERTIFICATE).unwrap()
+    });
+    let colors = (1..25_u8).map(|i| [f32::from(i) / 7.0, -0.3, f32::from(i % 5) + 0.1]).collect();
+    [plain_file, deep_file, exr_bytes(&plain([6, 4], colors), LayerSet::COLOR)]
+}
+
+/// A certified OpenEXR file with these layers.
+fn exr_bytes(image: &Image, layers: LayerSet) -> Vec<u8> {
+    let mut bytes = Cursor::new(Vec::new());
+    let remarks = exr_file::Remarks { adapter: Some("a GPU"), certificate: Some(CERTIFICATE) };
+    exr_file::write(image, layers, &Encoding::default(), remarks, &mut bytes).unwrap();
+    bytes.into_inner()
+}
+
+/// The error for a file, which is one line.
+fn refusal(bytes: &[u8]) -> String {
+    let error = read(bytes).unwrap_err().to_string();
+    assert!(!error.contains('\n') && error.len() < 300, "{error}");
+    error
+}
+
+#[test]
+fn no_byte_of_a_certified_file_is_without_meaning() {
+    for file in certified() {
+        let whole = read(&file).unwrap();
+        assert_eq!(whole.certificate.as_deref(), Some(CERTIFICATE));
+        for place in 0..file.len() {
+            refusal(&file[..place]);
+            for flipped in [1, 2, 4, 8, 16, 32, 64, 128, 255] {
+                let mut file = file.clone();
+                file[place] ^= flipped;
+                // The digests of the samples and of the certificate find what is not refused here.
+                assert!(read(&file).ok().as_ref() != Some(&whole), "byte {place} xor {flipped}");
+            }
+        }
+        refusal(&[&file[..], &[0]].concat());
+    }
+}
+
+fn chunk(name: &str, data: &[u8]) -> Vec<u8> {
+    let named = [name.as_bytes(), data].concat();
+    let mut crc = flate2::Crc::new();
+    crc.update(&named);
+    [&(data.len() as u32).to_be_bytes()[..], &named, &crc.sum().to_be_bytes()].concat()
+}
+
+#[test]
+fn a_certified_png_has_only_the_chunks_of_its_writer() {
+    let [file, ..] = certified();
+    let mut chunks: Vec<Vec<u8>> = Vec::new();
+    while let Some(length) = file.get(8 + chunks.concat().len()..).and_then(|rest| rest.first_chunk()) {
+        let start = 8 + chunks.concat().len();
+        chunks.push(file[start..start + 12 + u32::from_be_bytes(*length) as usize].to_vec());
+    }
+    let names: Vec<_> = chunks.iter().map(|chunk| str::from_utf8(&chunk[4..8]).unwrap()).collect();
+    assert_eq!(names, ["IHDR", "pHYs", "sRGB", "tEXt", "IDAT", "IEND"]);
+    // Puts chunks in the place of some.
+    let with = |replaced: std::ops::Range<usize>, by: &[Vec<u8>]| {
+        let mut chunks = chunks.clone();
+        chunks.splice(replaced, by.iter().cloned());
+        [&file[..8], &chunks.concat()].concat()
+    };
+    let (header, samples) = (&chunks[0][8..21], &chunks[4][8..chunks[4].len() - 4]);
+    let [first, second] = [&samples[..20], &samples[20..]].map(|half| chunk("IDAT", half));
+    assert_eq!(read(&with(4..5, &[first.clone(), second.clone()])).unwrap(), read(&file).unwrap());
+
+    for (place, name, content) in [
+        (4, "gAMA", &[0, 0, 0xb1, 0x8f][..]),
+        (4, "cHRM", &[0; 32]),
+        (4, "iCCP", b"a\0\0"),
+        (4, "tRNS", &[0; 6]),
+        (4, "eXIf", b"MM\0*"),
+        (4, "iTXt", b"a\0\0\0\0\0b"),
+        (5, "PLTE", &[0; 6]),
+        (5, "tIME", &[7; 7]),
+        (5, "ab\u{1b}z", b""),
+    ] {
+        let error = refusal(&with(place..place, &[chunk(name, content)]));
+        let shown = name.as_bytes().escape_ascii();
+        let words =
+            format!("it has the chunk {shown}, which `pinhole render` does not write, so that viewers may show");
+        assert!(error.starts_with(&words), "{error}");
+    }
+    let control = chunk("fcTL", &[&[0; 4], &header[..8], &[0, 0, 0, 0, 0, 0, 0, 0, 0, 1, 0, 1, 0, 0]].concat());
+    let frame = chunk("fdAT", &[&[0, 0, 0, 1], samples].concat());
+    let animated = [chunk("acTL", &[0, 0, 0, 1, 0, 0, 0, 0]), chunks[4].clone(), control, frame];
+    let [interlaced, smaller] = [(12, 1), (7, 3)].map(|(place, byte)| {
+        let mut header = header.to_vec();
+        header[place] = byte;
+        chunk("IHDR", &header)
+    });
+    for (forged, words) in [
+        (with(4..5, &animated), "it has the chunk acTL, which"),
+        (with(0..1, &[interlaced]), "its chunk IHDR is not the one"),
+        (with(0..1, &[smaller]), "its stream of samples is not as long"),
+        (with(1..2, &[chunk("pHYs", &[0, 0, 9, 0, 0, 0, 1, 0, 1])]), "it has the chunk pHYs"),
+        (with(1..2, &[chunk("pHYs", &[0, 0, 9, 0, 0, 0, 9, 0, 0])]), "its chunk pHYs is not the one"),
+        (with(2..3, &[chunk("sRGB", &[0])]), "its chunk sRGB is not the one"),
+        (with(2..3, &[]), "it lacks the chunk sRGB"),
+        (with(4..4, &[chunk("tEXt", b"Title\0a")]), "its chunk tEXt is not the one"),
+        (with(4..4, &chunks[3..4]), "it has one chunk of"),
+        (with(4..5, &[first, chunks[2].clone(), second]), "it has one chunk of"),
+        (with(4..5, &[chunk("IDAT", &[samples, &[0]].concat())]), "its stream of samples is not as long"),
+        (with(6..6, &chunks[5..]), "data follow its end"),
+    ] {
+        let error = refusal(&forged);
+        assert!(error.starts_with(words), "{error}");
+    }
+}
+
+#[test]
+fn a_certified_exr_has_only_the_bytes_of_its_writer() {
+    let [.., file] = certified();
+    // The table of rows has 8 bytes for each. The places in it move with what is put before them.
+    let table = file.len() - 4 * (8 + 8 + 6 * 16);
+    let with = |attribute: &[u8]| {
+        let places = file[table..table + 32].as_chunks::<8>().0.iter().map(|place| u64::from_le_bytes(*place));
+        let moved: Vec<u8> = places.flat_map(|place| (place + attribute.len() as u64).to_le_bytes()).collect();
+        [&file[..8], attribute, &file[8..table], &moved, &file[table + 32..]].concat()
+    };
+    let name = b"displayWindow\0box2i\0";
+    let window = file.windows(name.len()).position(|bytes| bytes == name).unwrap();
+    let mut cropped = file.clone();
+    cropped[window + name.len() + 4 + 8] = 2;
+    let swapped = [&file[..table], &file[table + 8..table + 16], &file[table..table + 8], &file[table + 16..]].concat();
+    for (forged, words) in [
+        (cropped, "its attribute displayWindow is not the one"),
+        (with(b"whiteLuminance\0float\0\x04\0\0\0\0\0\0\0"), "it has the attribute whiteLuminance, which"),
+        (with(b"comments\0string\0\x02\0\0\0hi"), "it has the attribute comments, which"),
+        (with(&file[window..window + name.len() + 4 + 16]), "it has one attribute of"),
+        (swapped, "its rows are stored in another way"),
+        (exr_bytes(&picture(), LayerSet::DATA), "its attribute channels is not the one"),
+    ] {
+        let error = refusal(&forged);
+        assert!(error.starts_with(words), "{words}: {error}");
     }
 }
 
