@@ -56,8 +56,15 @@ pub(crate) fn run(args: &VerifyArgs, path: &Path, scene: &Path) -> Result<(), Fa
     let certificate = PictureCertificate::from_text(text).with_context(of_picture)?;
     let written = FilePicture { size: file.size, samples: file.samples };
     certified::check_samples(&certificate, &written).with_context(of_picture)?;
-    let job = job(path, scene, &certificate, &written.samples)?;
-    let mut input = job.source.load()?;
+    // The settings are those of the file, not of the user.
+    let unsuited = |failure| match failure {
+        Failure::Usage(error) => {
+            Failure::from(anyhow!("{}: the certificate's settings do not suit the scene: {error}", path.display()))
+        }
+        other => other,
+    };
+    let job = job(path, scene, &certificate, &written.samples).map_err(unsuited)?;
+    let mut input = job.source.load().map_err(unsuited)?;
     let files: Vec<_> = input.files.iter().cloned().chain([path.to_path_buf()]).collect();
     check_not_inputs(args.json.iter(), &files)?;
     let note = progress::notes(false);
