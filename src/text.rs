@@ -68,7 +68,9 @@ mod tests {
         assert_eq!(one_line(&"(".repeat(1 << 20)).chars().count(), 201);
         assert_eq!(shortened(&"ü".repeat(41)), "ü".repeat(40) + "…");
         assert!(
-            (0..=u32::from(char::MAX)).filter_map(char::from_u32).all(|c| !whole_line(&c.into()).contains(is_control))
+            (0..=u32::from(char::MAX))
+                .filter_map(char::from_u32)
+                .all(|c| !whole_line(&String::from(c)).contains(is_control))
         );
     }
 }

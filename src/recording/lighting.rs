@@ -17,6 +17,7 @@ use crate::scene::SceneAppearance;
 use crate::scene::material::{Material, SurfaceProperties};
 
 /// The parameters and tables of a lighting.
+#[cfg_attr(not(feature = "gpu"), expect(dead_code, reason = "the renderer reads all fields"))]
 pub(crate) struct HostLighting {
     pub(crate) lighting: UploadedLighting,
     /// The tables of lights, materials and energies, which are never empty.

@@ -276,7 +276,7 @@ impl Filter<'_> {
     /// The similarity of two pixels in shape and albedo.
     fn likeness(&self, a: usize, b: usize, distance: f64) -> Interval {
         let [one, other] = [a, b].map(|index| &self.guides[index]);
-        if a == b && (one.is_miss.is_none() || one.errors != [0.0; 2]) {
+        if a == b && (one.is_miss.is_none() || one.errors.iter().any(|error| *error > 0.0)) {
             return ITSELF;
         }
         let alike = match (one.is_miss, other.is_miss) {

@@ -138,7 +138,8 @@ impl WrittenPicture<'_> {
     pub(in crate::verify) fn difference(&self, exact: &Self, index: usize) -> Option<(usize, [f64; 2])> {
         let [found, exact] = [self.at(index), exact.at(index)];
         let is_same = |channel: usize| match (self.samples, self.encoding.bits) {
-            (Samples::Encoded(_), Bits::Eight) => found[channel] == exact[channel],
+            // Samples are whole numbers.
+            (Samples::Encoded(_), Bits::Eight) => (found[channel] - exact[channel]).abs() < 1.0,
             (Samples::Encoded(_), Bits::Sixteen) => (found[channel] - exact[channel]).abs() <= 1.0,
             (Samples::Linear(_), _) => is_near(found[channel], exact[channel]),
         };
