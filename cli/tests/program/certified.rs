@@ -66,7 +66,7 @@ fn a_picture_is_checked_with_the_scene_alone() {
 
 /// The flags of pictures whose samples, noise filter, lines, legend and encoding all count.
 const LIT: [(&str, &str); 5] = [
-    ("data.csv", "--style default --samples 8 --legend=right --color-by radius --label Abc"),
+    ("data.csv", "--style default --samples 8 --legend=right --color-by radius --label Water"),
     ("data.csv", "--style studio --samples 6 --denoise=false --filter gaussian"),
     ("data.csv", "--style illustration --bits 16 --transparent"),
     ("scene.toml", "--style path --samples 4 --exposure 0.5 --tone agx"),
@@ -122,7 +122,7 @@ fn forged_pictures_with_light_are_not_proved() {
         ("data.csv", "--style default --samples 8 --color-by radius", 3),
         ("data.csv", "--style studio --samples 6 --denoise=false --filter gaussian", 3),
         ("data.csv", "--style illustration --samples 8", 3),
-        ("data.csv", "--style default --samples 8 --label Abc", 4),
+        ("data.csv", "--style default --samples 8 --label Water", 4),
         ("scene.toml", "--style path --samples 4", 4),
     ] {
         folder
@@ -143,7 +143,7 @@ fn forged_pictures_with_light_are_not_proved() {
             ["setting samples 6", "setting samples 5"],
             ["setting size 48x36", "setting size 48x36\nsetting seed 5"],
             ["setting filter gaussian", "setting filter box"],
-            ["setting label Abc", "setting label Abd"],
+            ["setting label Water", "setting label Waters"],
             ["setting size 48x36", "setting size 48x36\nsetting ao 3"],
         ] {
             let change = |text: &str| text.replace(from, to);
