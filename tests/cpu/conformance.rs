@@ -376,6 +376,73 @@ fn honest_normals_far_from_the_origin_are_not_accused() {
     assert!(hits > 2000, "{hits}");
 }
 
+/// Measures the table of least errors in `docs/explain/how-verify-decides.md`.
+#[test]
+fn least_errors_are_those_of_the_table() {
+    let scenes = [
+        spheres::random(300, 5, |rng| 0.01 + 0.06 * rng.f32()),
+        spheres::random(800, 6, |_| 0.02),
+        spheres::four_decades(400),
+        spheres::random(3, 7, |_| 0.3),
+    ];
+    let seen = |scene: &Scene, turn: f64| {
+        let (_, [outside, ..]) = poses(scene);
+        let away = (scene.bounds_to_frame().center() - outside.origin()).normalize_or_zero();
+        let turned = away + turn * away.any_orthonormal_vector();
+        let pose = Pose::looking_along(outside.origin(), turned, [0.1, 1.0, 0.2]).unwrap();
+        PinholeCamera::with_vertical_fov(pose, 0.7, 1.3).unwrap()
+    };
+    let errors: Vec<i32> = (-24..-4).collect();
+    let mut table = String::new();
+    for (name, has_depths, has_normals) in [
+        ("depths, times 1 + e", true, false),
+        ("radii, times 1 + e", true, false),
+        ("radii, times 1 + e; ids alone", false, false),
+        ("camera, turned by e radians", true, false),
+        ("camera, turned by e radians; ids alone", false, false),
+        ("normals, turned by e radians", false, true),
+    ] {
+        // The exponent of the first error that is found, in each scene.
+        let mut found = [Vec::new(), Vec::new()];
+        for spheres in &scenes {
+            let exact = scene(spheres);
+            let camera = seen(&exact, 0.0);
+            let view = View::new(&camera, film());
+            let pixels = (0..47).flat_map(|j| (0..61).map(move |i| [i, j]));
+            let rays: Vec<Ray> = pixels.map(|pixel| narrowed(view.ray_through_center(pixel).unwrap())).collect();
+            for (found, rays) in found.iter_mut().zip([Rays::Given(&rays), Rays::View(view)]) {
+                let is_missed = |exponent: &i32| {
+                    let e = 2_f64.powi(*exponent);
+                    let part = |word: &str| if name.starts_with(word) { e } else { 0.0 };
+                    let spoilt = spheres.iter().map(|[x, y, z, r]| [*x, *y, *z, r + r * part("radii") as f32]);
+                    let spoilt = scene(&spoilt.collect::<Vec<_>>());
+                    let mut made = Layers::by_reference(&spoilt, &View::new(&seen(&exact, part("camera")), film()));
+                    made.depths.iter_mut().for_each(|depth| *depth *= 1.0 + part("depths"));
+                    let turned = |n: &[f64; 3]| {
+                        let n = DVec3::from(*n);
+                        (n + part("normals") * n.any_orthonormal_vector()).normalize_or_zero().to_array()
+                    };
+                    let normals: Vec<_> = made.normals.iter().map(turned).collect();
+                    let answers = Answers {
+                        depths: made.answers().depths.filter(|_| has_depths),
+                        normals: Some(&*normals).filter(|_| has_normals),
+                        ..made.answers()
+                    };
+                    certified(&exact, &answers, rays).outcome() != Outcome::Violated
+                };
+                found.push(errors[errors.partition_point(is_missed)]);
+            }
+        }
+        let columns = found.map(|found| {
+            let [first, last] = [found.iter().min(), found.iter().max()].map(|exponent| 2_f64.powi(*exponent.unwrap()));
+            format!("{:.1e} | {last:.1e}", first / 2.0)
+        });
+        table += &format!("| {name} | {} |\n", columns.join(" | "));
+    }
+    let docs = include_str!("../../docs/explain/how-verify-decides.md");
+    assert!(docs.contains(&table), "the table is now\n{table}");
+}
+
 #[test]
 fn a_smaller_limit_decides_more() {
     let picture = TestPicture::new();
