@@ -128,8 +128,12 @@ pub(crate) fn run(args: &CertifyArgs) -> Result<(), Failure> {
     };
     let found = certified(args, &input, &answers, rays.as_ref())?;
     let mut report = Report::new(&input, &answers, rays.is_some(), &found);
-    let comparable = rays.filter(|_| has_camera && [input.film.width(), input.film.height()] == ids.size);
-    report.picture.rays_off = comparable.map(|rays| RaysOff::new(&input, &rays.values));
+    if let Some(rays) = rays.filter(|_| has_camera) {
+        match [input.film.width(), input.film.height()] == ids.size {
+            true => report.picture.rays_off = Some(RaysOff::new(&input, &rays.values)),
+            false => note(&"the camera's picture has another size than the rays; to compare them, add --size"),
+        }
+    }
     progress::clear();
     answer(report.table().as_bytes())?;
     if let Some(path) = &args.json {

@@ -132,6 +132,8 @@ fn rays_may_be_given() {
     let text = String::from_utf8(run.stdout).unwrap();
     let words = "\npicture: 40x30, given rays, off those of the pinhole camera by up to 2.86e1 degrees and ";
     assert!(text.contains(words) && text.contains(" of 24\n"), "{text}");
+    let run = folder.run("certify scene.toml --id few.npy --rays rays.npz --size 20x15").succeeded();
+    assert!(run.stderr.contains("has another size than the rays"), "{run:?}");
 }
 
 #[test]
