@@ -34,7 +34,7 @@ impl Layers {
 
     /// Ids and depths of given rays, by a function that computes the distance to a sphere.
     fn by_testing_all(
-        scene: &Scene,
+        spheres: &[[f32; 4]],
         size: [u32; 2],
         rays: &[Ray],
         test: impl Fn([f32; 3], [f32; 3], [f32; 4]) -> Option<f32>,
@@ -42,7 +42,7 @@ impl Layers {
         let hits = rays.iter().map(|ray| {
             let narrow = |v: DVec3| v.as_vec3().to_array();
             let (origin, direction) = (narrow(ray.origin), narrow(ray.direction));
-            let hits = scene.spheres().iter().zip(0..);
+            let hits = spheres.iter().zip(0..);
             hits.filter_map(|(sphere, id)| Some((test(origin, direction, *sphere)?, id)))
                 .min_by(|a, b| a.0.total_cmp(&b.0))
         });
@@ -126,6 +126,11 @@ fn a_pixel_without_a_ray_must_be_a_miss() {
     assert_eq!(found.histogram().last(), Some(&(f64::INFINITY, 1)));
 }
 
+/// A ray of numbers in f32.
+fn narrowed(Ray { origin, direction }: Ray) -> Ray {
+    Ray { origin: origin.as_vec3().as_dvec3(), direction: direction.as_vec3().as_dvec3() }
+}
+
 /// A picture of many spheres with its rays, rounded to f32, and the answers of a careful f32 renderer.
 struct TestPicture {
     scene: Scene,
@@ -140,13 +145,8 @@ impl TestPicture {
         let view = View::new(camera.as_ref(), film());
         let size = [view.film.width(), view.film.height()];
         let pixels = (0..size[1]).flat_map(|j| (0..size[0]).map(move |i| [i, j]));
-        let narrow = |v: DVec3| v.as_vec3().as_dvec3();
-        let rays = pixels.map(|pixel| {
-            let ray = view.ray_through_center(pixel).unwrap();
-            Ray { origin: narrow(ray.origin), direction: narrow(ray.direction) }
-        });
-        let rays: Vec<Ray> = rays.collect();
-        let made = Layers::by_testing_all(&scene, size, &rays, careful);
+        let rays: Vec<Ray> = pixels.map(|pixel| narrowed(view.ray_through_center(pixel).unwrap())).collect();
+        let made = Layers::by_testing_all(scene.spheres(), size, &rays, careful);
         Self { scene, rays, made }
     }
 
@@ -283,7 +283,7 @@ fn depths_that_are_a_little_off_and_the_textbooks_formula_are_found() {
     let violated = found.count(Outcome::Violated);
     assert!(violated > picture.hits() * 9 / 10, "{violated} of {}", picture.hits());
     assert!(found.worst.iter().all(|finding| finding.reason == Reason::Depth));
-    let made = Layers::by_testing_all(&picture.scene, picture.made.size, &picture.rays, textbook);
+    let made = Layers::by_testing_all(picture.scene.spheres(), picture.made.size, &picture.rays, textbook);
     let violated = picture.judged(&made).count(Outcome::Violated);
     assert!(violated > picture.hits() / 20, "{violated} of {}", picture.hits());
 }
@@ -329,6 +329,118 @@ fn turned_normals_are_found() {
     assert!(spoilt(|normal| DVec3::new(-normal.x, normal.y, normal.z)) > hits * 9 / 10);
     assert!(spoilt(|normal| (normal + DVec3::splat(1e-3)).normalize_or_zero()) > hits / 2);
     assert_eq!(spoilt(|normal| 1.01 * normal), hits);
+}
+
+/// The normal of a hit as renderers compute it, from the place of the hit in the world, in f32.
+fn normal_in_world(ray: &Ray, depth: f64, center: [f32; 3]) -> [f32; 3] {
+    let [o, d] = [ray.origin, ray.direction].map(|v| v.as_vec3().to_array());
+    let v = [0, 1, 2].map(|axis| o[axis] + depth as f32 * d[axis] - center[axis]);
+    let length = dot(v, v).sqrt();
+    v.map(|x| x / length)
+}
+
+/// Coordinates far from the origin have few digits, so that normals made of them do as well.
+#[test]
+fn honest_normals_far_from_the_origin_are_not_accused() {
+    let mut hits = 0;
+    for (far, turned) in [(0.0_f32, 1e-4), (4096.0, 5e-3), (1e4, 1e-2), (1e6, 1.0)] {
+        for axes in [[1.0_f32, 1.0, 1.0], [1.0, 0.0, 0.0]] {
+            let center = axes.map(|axis| axis * far);
+            let [x, y, z] = center.map(f64::from);
+            let scene = Scene::from_f32(vec![[center[0], center[1], center[2], 1.0]], LinearRgb::WHITE).unwrap();
+            let pose = Pose::looking_at([x, y, z + 8.0], [x, y, z], [0.0, 1.0, 0.0]).unwrap();
+            let camera = PinholeCamera::with_vertical_fov(pose, 0.3, 1.0).unwrap();
+            let view = View::new(&camera, Film::new(64, 64).unwrap());
+            let pixels = (0..64).flat_map(|j| (0..64).map(move |i| [i, j]));
+            let rays: Vec<Ray> = pixels.map(|pixel| narrowed(view.ray_through_center(pixel).unwrap())).collect();
+            let in_world = [[center[0], center[1], center[2], 1.0]];
+            let made = Layers::by_testing_all(&in_world, [64, 64], &rays, careful);
+            let normals: Vec<[f64; 3]> = rays
+                .iter()
+                .zip(&made.depths)
+                .map(|(ray, depth)| normal_in_world(ray, *depth, center).map(f64::from))
+                .collect();
+            let answers = Answers { normals: Some(&normals), ..made.answers() };
+            for rays in [Rays::Given(&rays), Rays::View(view)] {
+                let found = certified(&scene, &answers, rays);
+                assert_eq!(found.count(Outcome::Violated), 0, "{far}: {found}");
+                let spoil = |n: &[f64; 3]| (DVec3::from(*n) + turned * DVec3::Y).normalize_or_zero().to_array();
+                let normals: Vec<_> = normals.iter().map(spoil).collect();
+                let found = certified(&scene, &Answers { normals: Some(&normals), ..answers }, rays);
+                hits = made.ids.iter().filter(|id| **id != NO_ID).count();
+                assert!(found.count(Outcome::Violated) > hits / 2, "{far}: {found}");
+                assert_eq!(found.worst[0].reason, Reason::Normal);
+            }
+        }
+    }
+    assert!(hits > 2000, "{hits}");
+}
+
+/// Measures the table of least errors in `docs/explain/how-verify-decides.md`.
+#[test]
+fn least_errors_are_those_of_the_table() {
+    let scenes = [
+        spheres::random(300, 5, |rng| 0.01 + 0.06 * rng.f32()),
+        spheres::random(800, 6, |_| 0.02),
+        spheres::four_decades(400),
+        spheres::random(3, 7, |_| 0.3),
+    ];
+    let seen = |scene: &Scene, turn: f64| {
+        let (_, [outside, ..]) = poses(scene);
+        let away = (scene.bounds_to_frame().center() - outside.origin()).normalize_or_zero();
+        let turned = away + turn * away.any_orthonormal_vector();
+        let pose = Pose::looking_along(outside.origin(), turned, [0.1, 1.0, 0.2]).unwrap();
+        PinholeCamera::with_vertical_fov(pose, 0.7, 1.3).unwrap()
+    };
+    let errors: Vec<i32> = (-24..-4).collect();
+    let mut table = String::new();
+    for (name, has_depths, has_normals) in [
+        ("depths, times 1 + e", true, false),
+        ("radii, times 1 + e", true, false),
+        ("radii, times 1 + e; ids alone", false, false),
+        ("camera, turned by e radians", true, false),
+        ("camera, turned by e radians; ids alone", false, false),
+        ("normals, turned by e radians", false, true),
+    ] {
+        // The exponent of the first error that is found, in each scene.
+        let mut found = [Vec::new(), Vec::new()];
+        for spheres in &scenes {
+            let exact = scene(spheres);
+            let camera = seen(&exact, 0.0);
+            let view = View::new(&camera, film());
+            let pixels = (0..47).flat_map(|j| (0..61).map(move |i| [i, j]));
+            let rays: Vec<Ray> = pixels.map(|pixel| narrowed(view.ray_through_center(pixel).unwrap())).collect();
+            for (found, rays) in found.iter_mut().zip([Rays::Given(&rays), Rays::View(view)]) {
+                let is_missed = |exponent: &i32| {
+                    let e = 2_f64.powi(*exponent);
+                    let part = |word: &str| if name.starts_with(word) { e } else { 0.0 };
+                    let spoilt = spheres.iter().map(|[x, y, z, r]| [*x, *y, *z, r + r * part("radii") as f32]);
+                    let spoilt = scene(&spoilt.collect::<Vec<_>>());
+                    let mut made = Layers::by_reference(&spoilt, &View::new(&seen(&exact, part("camera")), film()));
+                    made.depths.iter_mut().for_each(|depth| *depth *= 1.0 + part("depths"));
+                    let turned = |n: &[f64; 3]| {
+                        let n = DVec3::from(*n);
+                        (n + part("normals") * n.any_orthonormal_vector()).normalize_or_zero().to_array()
+                    };
+                    let normals: Vec<_> = made.normals.iter().map(turned).collect();
+                    let answers = Answers {
+                        depths: made.answers().depths.filter(|_| has_depths),
+                        normals: Some(&*normals).filter(|_| has_normals),
+                        ..made.answers()
+                    };
+                    certified(&exact, &answers, rays).outcome() != Outcome::Violated
+                };
+                found.push(errors[errors.partition_point(is_missed)]);
+            }
+        }
+        let columns = found.map(|found| {
+            let [first, last] = [found.iter().min(), found.iter().max()].map(|exponent| 2_f64.powi(*exponent.unwrap()));
+            format!("{:.1e} | {last:.1e}", first / 2.0)
+        });
+        table += &format!("| {name} | {} |\n", columns.join(" | "));
+    }
+    let docs = include_str!("../../docs/explain/how-verify-decides.md");
+    assert!(docs.contains(&table), "the table is now\n{table}");
 }
 
 #[test]

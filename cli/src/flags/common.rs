@@ -4,11 +4,10 @@ use std::path::PathBuf;
 
 use clap::{Args, Command, Id, ValueEnum};
 
-use crate::flags::settings::{SettingArgs, VIEW, names};
+use crate::flags::settings::{SettingArgs, VIEW};
 use crate::terminal::text::one_of;
 use pinhole::accel::AccelChoice;
 use pinhole_data::load::Format;
-use pinhole_figure::settings::flags::Group;
 
 #[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
 pub(crate) enum Stereo {
@@ -97,9 +96,4 @@ pub(crate) enum Backend {
 pub(crate) fn ids<A: Args>() -> impl Iterator<Item = Id> {
     let command = A::augment_args(Command::new(""));
     command.get_arguments().map(|argument| argument.get_id().clone()).collect::<Vec<_>>().into_iter()
-}
-
-/// Arguments that describe the camera and the size of the picture.
-pub(crate) fn camera_ids() -> impl Iterator<Item = Id> {
-    names(Group::Camera as u32).chain(["size"]).map(Id::from)
 }

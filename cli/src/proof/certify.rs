@@ -7,7 +7,6 @@ use anyhow::{Context, anyhow};
 use clap::{Args, ValueEnum};
 use serde::Serialize;
 
-use crate::flags::common::camera_ids;
 use crate::flags::settings::{SettingArgs, VIEW};
 use crate::input::{Input, Source, read};
 use crate::output::files::{check_not_inputs, check_writable, name_all, unnamed};
@@ -23,12 +22,14 @@ use pinhole::verify::run_file::scene_sha256;
 use pinhole::verify::{Checker, MOST_UNDECIDED, Outcome};
 use pinhole_data::load::LoadError;
 use pinhole_data::load::npy::pixels::{self, Pixels};
+use pinhole_figure::settings::flags::Group;
 
 #[derive(Debug, Args)]
 #[command(
     after_help = "For each pixel the check computes the least k for which the answer is legal: the exact answer for a \
     sphere that is moved, relative to the ray, by at most k times 2^-24 of its distance (of its radius, from inside; and \
-    with rays of the scene's camera, of its distance plus an eighth of that of the camera from the origin). An honest f32 \
+    with rays of the scene's camera, of its distance plus an eighth of that of the camera from the origin of the data's \
+    frame). For normals, an eighth of the distance of the ray's start from the origin of the world is added. An honest f32 \
     renderer needs at most 24 for given rays; 16 more for rays that it makes itself, and 8 more for normals. A pixel is proved if its answer is the only \
     legal one for the limit, undecided if there are others, and violated if it needs more than the limit.\n\n\
     Arrays have row 0 at the top, in either byte order. IDs are uint32, int32, uint64 or int64 of shape (height, width): \
@@ -38,7 +39,7 @@ use pinhole_data::load::npy::pixels::{self, Pixels};
     same shape or (3,).\n\n\
     Exit codes: 0 no pixel needs more than the limit, and at most 1 % of the pixels are undecided; 1 the job failed; \
     2 wrong usage; 3 a pixel needs more than the limit; 4 none does, but more is undecided.\n\n\
-    JSON: `version`, `scene` (spheres, sha256), `picture` (width, height, camera; null for given rays), `checked`, \
+    JSON: `version`, `scene` (spheres, sha256), `picture` (width, height, camera; null for given rays; rays_off: camera, degrees, distance), `checked`, \
     `at_most`, `counts` (proved, undecided, violated), `decided_fraction`, `largest`, `histogram` (up_to, count), `worst` \
     (up to a hundred pixels: pixel, id, depth, outcome, k, margin, reason, exact_id, exact_distance, message), `outcome`, \
     `command`; what is infinite or a miss is null. New versions may add keys, but do not change these."
@@ -62,7 +63,7 @@ pub(crate) struct CertifyArgs {
     #[arg(long, value_name = "NORMAL.npy")]
     normal: Option<PathBuf>,
     /// The rays that the renderer was given, in world space [default: those of the camera]
-    #[arg(long, value_name = "RAYS.npz", conflicts_with_all = camera_ids())]
+    #[arg(long, value_name = "RAYS.npz")]
     rays: Option<PathBuf>,
     /// The largest k that a pixel may need [default: 40, or 24 with --rays; 8 more with --normal]
     #[arg(long, value_name = "K")]
@@ -91,6 +92,7 @@ pub(crate) fn run(args: &CertifyArgs) -> Result<(), Failure> {
     threads::start()?;
     let ids = array(&args.id, pixels::ids)?;
     let source = Source::new(&args.path, &args.view.given)?.without_bricks("`certify`")?;
+    let has_camera = !source.is_data() || args.view.given.first_in(Group::Camera as u32).is_some();
     let input = source.with_size_of_data(ids.size)?.load()?;
     let files: Vec<PathBuf> = input.files.iter().chain(args.inputs()).cloned().collect();
     check_not_inputs(args.json.iter(), &files)?;
@@ -125,7 +127,13 @@ pub(crate) fn run(args: &CertifyArgs) -> Result<(), Failure> {
         normals: normals.as_ref().map(|normals| &*normals.values),
     };
     let found = certified(args, &input, &answers, rays.as_ref())?;
-    let report = Report::new(&input, &answers, rays.is_some(), &found);
+    let mut report = Report::new(&input, &answers, rays.is_some(), &found);
+    if let Some(rays) = rays.filter(|_| has_camera) {
+        match [input.film.width(), input.film.height()] == ids.size {
+            true => report.picture.rays_off = Some(RaysOff::new(&input, &rays.values)),
+            false => note(&"the camera's picture has another size than the rays; to compare them, add --size"),
+        }
+    }
     progress::clear();
     answer(report.table().as_bytes())?;
     if let Some(path) = &args.json {
@@ -242,6 +250,31 @@ struct Picture {
     height: u32,
     /// The kind of camera, unless rays were given.
     camera: Option<&'static str>,
+    /// The distance of given rays from those of the camera, if there is one.
+    rays_off: Option<RaysOff>,
+}
+
+#[derive(Serialize)]
+struct RaysOff {
+    camera: &'static str,
+    /// The largest angle between two directions.
+    degrees: f64,
+    /// The largest distance of the start of a ray of the camera from the line of the given ray.
+    distance: f64,
+}
+
+impl RaysOff {
+    fn new(input: &Input, rays: &[Ray]) -> Self {
+        let (view, mut off) = (input.view(), [0_f64; 2]);
+        for (index, ray) in (0..).zip(rays) {
+            let pixel = [index % view.film.width(), index / view.film.width()];
+            let Some(exact) = view.ray_through_center(pixel) else { continue };
+            let angle = ray.direction.cross(exact.direction).length().atan2(ray.direction.dot(exact.direction));
+            let beside = (exact.origin - ray.origin).cross(ray.direction).length();
+            off = [off[0].max(angle.to_degrees()), off[1].max(beside)];
+        }
+        Self { camera: input.camera.kind().name(), degrees: off[0], distance: off[1] }
+    }
 }
 
 #[derive(Serialize)]
@@ -300,7 +333,7 @@ impl Report {
         Self {
             version: env!("CARGO_PKG_VERSION"),
             scene: Scene { spheres: input.scene.len(), sha256: scene_sha256(&input.scene) },
-            picture: Picture { width, height, camera: (!has_rays).then(|| input.camera.kind().name()) },
+            picture: Picture { width, height, camera: (!has_rays).then(|| input.camera.kind().name()), rays_off: None },
             checked: checked.into_iter().flatten().collect(),
             at_most: found.at_most,
             counts: Outcome::ALL.iter().map(count).collect(),
@@ -320,8 +353,11 @@ impl Report {
 
     pub(crate) fn table(&self) -> String {
         let Scene { spheres, sha256 } = &self.scene;
-        let Picture { width, height, camera } = self.picture;
-        let rays = camera.map_or("given rays".to_owned(), |camera| format!("{camera} camera"));
+        let Picture { width, height, camera, rays_off } = &self.picture;
+        let mut rays = camera.map_or("given rays".to_owned(), |camera| format!("{camera} camera"));
+        if let Some(RaysOff { camera, degrees, distance }) = rays_off {
+            rays += &format!(", off those of the {camera} camera by up to {degrees:.2e} degrees and {distance:.2e}");
+        }
         format!(
             "scene: {spheres} spheres, {} bytes, sha256 {sha256}\npicture: {width}x{height}, {rays}\n\
              checked: {}\n{}{}\n",

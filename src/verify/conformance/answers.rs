@@ -23,7 +23,7 @@ pub const FOR_CAMERAS: f64 = 16.0;
 /// Added to the limit if normals are judged.
 pub const FOR_NORMALS: f64 = 8.0;
 
-/// The part of the distance of a ray's start from the origin that is added to the size of a sphere.
+/// The part of the distance of a ray's start from the origin of coordinates that is added to the size of a sphere.
 pub(super) const OF_COORDINATES: f64 = 1.0 / 8.0;
 
 /// The largest deviation of a ray's direction from unit length: 2⁻²⁰.

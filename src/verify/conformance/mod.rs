@@ -23,8 +23,9 @@
 //! An answer is *legal for k* if every sphere can be moved by at most k, each by itself, such that
 //!
 //! * the claimed sphere is hit, where depths are given at exactly the claimed distance, and where normals are given
-//!   with the claimed normal (for which the move may be another, and s is never 0, because the point that is hit has
-//!   coordinates);
+//!   with the claimed normal. For normals the move may be another, and s is an eighth of the distance of the ray's start
+//!   from the origin of the world, or of the frame if that is farther, for all rays, because the point that is hit has
+//!   coordinates there;
 //! * no other sphere is hit before that; or, if a miss is claimed, no sphere is hit at all.
 //!
 //! Each sphere is moved by itself because a renderer tests each sphere by itself, with separate roundings. If one of
@@ -40,7 +41,8 @@
 //!
 //! For a limit K, a pixel is *violated* if its least k is above K. It is *proved* if every answer that is legal for K
 //! names the sphere that the renderer named. Otherwise it is *undecided*: the answer is legal, but other answers are
-//! too, as at silhouettes and where spheres touch. A sphere whose radius is smaller than its move is never proved.
+//! too, as at silhouettes and where spheres touch. A sphere whose radius is smaller than its move, for ids or for normals,
+//! is never proved.
 //!
 //! # What an honest f32 renderer needs
 //!
@@ -67,7 +69,8 @@
 //!    9 of the id: at most 9 + 5.7 + 5.5 < **21**. Each further ULP in roots or quotients adds 2, so that those of WGSL
 //!    (2.5 ULP for a quotient, and a root that is as good) need less than 29.
 //! 6. The normal (o + t d − c)/r or made unit: the point is off by 21 as above, and by three more roundings of numbers
-//!    that are at most L + |o| + r, of which s takes up |o|; making it unit adds 3.5 ε r: less than 21 + 2.5 + 3.5 = **27**.
+//!    that are at most L + |o| + r, of which s takes up |o|, the distance from the origin of the coordinates in which the
+//!    renderer adds o and t d; making it unit adds 3.5 ε r: less than 21 + 2.5 + 3.5 = **27**.
 //! 7. A direction in f32 is of unit length up to 1.5 ε, so that distances and parameters differ by at most 1.5 ε t.
 //!
 //! So the limit is 24 for given rays ([`OF_GIVEN_RAYS`]), and 8 more if normals are judged ([`FOR_NORMALS`]). A

@@ -29,8 +29,8 @@ pub(super) struct PixelCheck<'a> {
 /// The exact ray of a pixel, in the scene's frame.
 struct ExactRay {
     line: Line,
-    /// The length that is added to sizes if numbers of the size of coordinates are rounded.
-    coordinates: f64,
+    /// The length that is added to the size of a sphere for its normals, which are made of coordinates in the world.
+    world: f64,
     /// The length that is added to the size of every sphere if the renderer made the ray by itself.
     start: f64,
 }
@@ -50,9 +50,12 @@ struct Claim {
     /// The length of the move for k = 1.
     unit: f64,
     distance: Option<f64>,
-    /// The least k for this sphere by itself, and the reason for it.
+    /// The least k for this sphere by itself, the move that it stands for, and the reason for it.
     alone: f64,
+    moved: f64,
     reason: Reason,
+    /// Whether some normals would not be legal.
+    tells_normals: bool,
 }
 
 impl ExactRay {
@@ -74,8 +77,8 @@ impl PixelCheck<'_> {
         };
         let origin = ray.origin - self.scene.origin();
         let line = Line::exact(origin, ray.direction / ray.direction.length());
-        let coordinates = OF_COORDINATES * origin.length();
-        Some(ExactRay { line, coordinates, start: if is_made { coordinates } else { 0.0 } })
+        let [in_frame, in_world] = [origin, ray.origin].map(|start| OF_COORDINATES * start.length());
+        Some(ExactRay { line, world: in_world.max(in_frame), start: if is_made { in_frame } else { 0.0 } })
     }
 
     /// Judges a pixel: its outcome and its least k. `others` is memory that is reused.
@@ -103,7 +106,7 @@ impl PixelCheck<'_> {
                     self.find_crossed(&ray, Some(&claim), t, others);
                     least = Self::to_be_nearest(&ray, &claim, others);
                 }
-                (least, is_certain && others.is_empty())
+                (least, is_certain && others.is_empty() && claim.tells_normals)
             }
         };
         let outcome = match (least <= self.at_most, is_only) {
@@ -134,7 +137,7 @@ impl PixelCheck<'_> {
         finding.exact = nearest.map(|other| (other.id, other.earliest));
         match self.claim(index, id, &ray) {
             Some(claim) if claim.alone as f32 >= least as f32 => {
-                (finding.margin, finding.reason) = (claim.alone * claim.unit, claim.reason);
+                (finding.margin, finding.reason) = (claim.moved, claim.reason);
             }
             claim => {
                 // The sphere that hides the claimed one the most.
@@ -172,28 +175,28 @@ impl PixelCheck<'_> {
             (DepthKind::AlongAxis, Some(axis)) => depths[index] / direction.dot(axis),
             _ => depths[index],
         });
-        let (mut alone, mut reason) = match distance {
-            Some(t) => (seen.move_to_hit_at(t) / unit, Reason::Depth),
-            None => (seen.move_to_hit() / unit, Reason::Missed),
+        let (mut moved, mut reason) = match distance {
+            Some(t) => (seen.move_to_hit_at(t), Reason::Depth),
+            None => (seen.move_to_hit(), Reason::Missed),
         };
-        if seen.move_to_hit() / unit >= alone {
+        if seen.move_to_hit() >= moved {
             reason = Reason::Missed;
         }
+        let (mut alone, mut tells_normals) = (moved / unit, true);
         if let Some(normals) = self.answers.normals {
-            let normal = DVec3::from(normals[index]);
-            let length = normal.length();
-            let moved = seen
-                .move_to_normal(direction, normal.normalize_or_zero())
-                .max((length - 1.0).abs() * f64::from(sphere[3]));
+            let (normal, radius) = (DVec3::from(normals[index]), f64::from(sphere[3]));
+            let of_normal =
+                seen.move_to_normal(direction, normal.normalize_or_zero()).max((normal.length() - 1.0).abs() * radius);
             // The coordinates of the hit point are rounded, whether the ray was given or not.
-            let needed = moved / (EPSILON * (seen.size() + ray.coordinates));
-            if needed > alone {
-                (alone, reason) = (needed, Reason::Normal);
+            let unit = EPSILON * (seen.size() + ray.world);
+            tells_normals = self.at_most * unit < radius;
+            if of_normal / unit > alone {
+                (alone, moved, reason) = (of_normal / unit, of_normal, Reason::Normal);
             }
         }
         // The value is NaN if a ray is perpendicular to the axis of depth.
         let alone = if alone.is_nan() { f64::INFINITY } else { alone };
-        Some(Claim { sphere, seen, unit, distance, alone, reason })
+        Some(Claim { sphere, seen, unit, distance, alone, moved, reason, tells_normals })
     }
 
     /// Finds the other spheres that may be the nearest, for k of at most the limit. Returns whether

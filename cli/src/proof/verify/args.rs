@@ -18,7 +18,7 @@ pub(crate) struct VerifyArgs {
     #[arg(long, value_name = "SCENE_OR_DATA", conflicts_with_all = not_of_pictures())]
     pub(crate) scene: Option<PathBuf>,
     /// With --scene, the most rays that the reference may follow
-    #[arg(long, value_name = "RAYS", default_value_t = 1e10, conflicts_with = "replay")]
+    #[arg(long, value_name = "RAYS", default_value_t = 1e10)]
     pub(crate) work: f64,
     #[command(flatten)]
     pub(crate) view: SettingArgs<VIEW>,
@@ -52,12 +52,12 @@ pub(crate) struct VerifyArgs {
 
 /// Arguments of `verify` that do not apply to written pictures.
 fn not_of_pictures() -> impl Iterator<Item = Id> {
-    not_of_recordings().filter(|id| *id != "path" && *id != "scene").chain(["report".into()])
+    not_of_recordings().filter(|id| !["path", "scene", "work"].contains(&id.as_str())).chain(["report".into()])
 }
 
 /// Arguments of `verify` that a recording contains, or that do not apply to it.
 fn not_of_recordings() -> impl Iterator<Item = Id> {
-    let own = ["path", "paths", "save", "tile_seed", "scene"].map(Id::from);
+    let own = ["path", "paths", "save", "tile_seed", "scene", "work"].map(Id::from);
     names(VIEW).map(Id::from).chain(ids::<AdapterArgs>()).chain(ids::<AccelArgs>()).chain(own)
 }
 
