@@ -344,11 +344,7 @@ impl PixelCheck<'_> {
 
     fn judge_any(&self, layers: &Layers, pixel: [u32; 2], legal: &mut LegalHits) -> Result<(), Mismatch> {
         let ray = self.model.ray(pixel).any(&self.model);
-        legal.clear();
-        if ray.may_hit_box {
-            legal.find_nearer(&self.checker.candidates, &ray.line, ray.slack, |_| false);
-            legal.miss |= ray.may_miss_box;
-        }
+        ray.find(&self.checker.candidates, legal);
         legal.start_from(&ray);
         let Layers { id, depth, .. } = *layers;
         if id == NO_ID && legal.miss {

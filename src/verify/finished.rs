@@ -124,7 +124,10 @@ impl Checker<'_> {
         settings: &RenderSettings,
         indices: &[usize],
     ) -> Vec<Option<[Interval; 3]>> {
-        match forward::inputs(self, view, settings).filter(|_| !indices.is_empty()) {
+        if indices.is_empty() {
+            return Vec::new();
+        }
+        match forward::inputs(self, view, settings) {
             Some(inputs) => LitCheck::new(self, &inputs).finished_light(indices),
             None => vec![None; indices.len()],
         }
@@ -152,13 +155,13 @@ impl Checker<'_> {
         let is_plain = has_intervals && !encoding.transparent && encoding.kept_background().is_none();
         let count = size[0] as usize * size[1] as usize;
         let parts = map_parts(ranges(count, CHUNK), |range| {
-            range.filter(|index| picture.difference(exact, *index).is_some()).collect::<Vec<usize>>()
+            range.filter_map(|index| Some((index, picture.difference(exact, index)?))).collect::<Vec<_>>()
         });
-        let differ = parts.concat();
-        let lights = if is_plain { self.legal_light(view, settings, &differ) } else { vec![None; differ.len()] };
+        let (indices, differences): (Vec<usize>, Vec<_>) = parts.into_iter().flatten().unzip();
+        let lights = if is_plain { self.legal_light(view, settings, &indices) } else { vec![None; indices.len()] };
         let mut all =
             FinishedCertificate { verdicts: vec![PixelVerdict::Exact; count], ..FinishedCertificate::default() };
-        for (index, light) in differ.into_iter().zip(lights) {
+        for ((index, light), (channel, [found, exact])) in indices.into_iter().zip(lights).zip(differences) {
             let pixel = pixel_at(index, size[0]);
             let judged = light.map(|light| picture.judge_light(index, light));
             all.verdicts[index] = match (&legal, judged) {
@@ -171,9 +174,7 @@ impl Checker<'_> {
                     PixelVerdict::Violated
                 }
             };
-            if let (PixelVerdict::Open | PixelVerdict::Wide, Some((channel, [found, exact]))) =
-                (all.verdicts[index], picture.difference(exact, index))
-            {
+            if matches!(all.verdicts[index], PixelVerdict::Open | PixelVerdict::Wide) {
                 all.open.push(PixelDifference { pixel, channel, found, exact });
             }
         }

@@ -6,6 +6,7 @@ use glam::DVec3;
 use crate::recording::TracedRay;
 use crate::verify::camera::{CameraModel, CameraRay, around};
 use crate::verify::certificate::{AXES, Mismatch, legal_is};
+use crate::verify::hit::{Candidates, LegalHits};
 use crate::verify::rounding::{DIVIDE, FLUSH, Interval, PAD, U, gamma};
 use crate::verify::sphere::{Line, Slack};
 
@@ -235,6 +236,24 @@ impl CameraRay {
             direction: around(direction, self.direction_error),
             may_hit_box: self.may_be_seen && enter.low <= leave.high,
             may_miss_box: self.may_be_unseen || enter.high > leave.low,
+        }
+    }
+}
+
+impl AnyRay {
+    /// The ray with more slack, for devices that start up to this far away.
+    pub(crate) fn moved(mut self, moved: f64) -> Self {
+        self.slack.across += PAD * moved;
+        self.slack.along += PAD * moved;
+        self
+    }
+
+    /// Finds all legal hits of the ray.
+    pub(crate) fn find(&self, candidates: &Candidates, hits: &mut LegalHits) {
+        hits.clear();
+        if self.may_hit_box {
+            hits.find_nearer(candidates, &self.line, self.slack, |_| false);
+            hits.miss |= self.may_miss_box;
         }
     }
 }

@@ -107,14 +107,7 @@ impl LitCheck<'_> {
             (0..3).for_each(|axis| state.set([slot, axis], Number::around(middle[axis], error[axis])));
         }
         state.set([slot::FIRST, 3], Number::around(ray.distance, PAD * ray.distance_error));
-        hits.clear();
-        if any.may_hit_box {
-            let mut slack = any.slack;
-            slack.across += PAD * moved;
-            slack.along += PAD * moved;
-            hits.find_nearer(&self.checker.candidates, &any.line, slack, |_| false);
-            hits.miss |= any.may_miss_box;
-        }
+        any.moved(moved).find(&self.checker.candidates, hits);
         let Interval { low, high } = any.enter;
         let distance = Number::between(low, high);
         let found = hits.spheres.iter().flat_map(|hit| {

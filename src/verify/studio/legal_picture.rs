@@ -74,15 +74,10 @@ impl LitCheck<'_> {
     }
 
     fn spot(&self, pixel: [u32; 2], hits: &mut LegalHits) -> Option<Spot> {
-        let mut ray = self.model.ray(pixel).any(&self.model);
-        let moved = PAD * self.moved(ray.line.origin);
-        ray.slack.across += moved;
-        ray.slack.along += moved;
-        hits.clear();
-        if ray.may_hit_box {
-            hits.find_nearer(&self.checker.candidates, &ray.line, ray.slack, |_| false);
-            hits.miss |= ray.may_miss_box;
-        }
+        let ray = self.model.ray(pixel).any(&self.model);
+        let moved = self.moved(ray.line.origin);
+        let ray = ray.moved(moved);
+        ray.find(&self.checker.candidates, hits);
         match (&hits.spheres[..], hits.miss) {
             ([], true) => Some(Spot {
                 id: NO_ID,
@@ -95,7 +90,7 @@ impl LitCheck<'_> {
                 let normals = LegalNormals::new(&ray.line, self.checker.scene.spheres()[hit.id as usize], ray.slack);
                 let (normal, normal_error) = normals.only()?;
                 let Interval { low, high } = ray.depths(side);
-                let depth = Interval { low: low - moved, high: high + moved };
+                let depth = Interval { low: low - PAD * moved, high: high + PAD * moved };
                 Some(Spot { id: hit.id, depth, normal, normal_error })
             }
             _ => None,

@@ -11,7 +11,7 @@ use crate::verify::camera::CameraModel;
 use crate::verify::certificate::Verdict;
 use crate::verify::checker::Checker;
 use crate::verify::hit::LegalHits;
-use crate::verify::rounding::{Interval, PAD, U};
+use crate::verify::rounding::{Interval, U};
 use crate::verify::sphere::{LegalNormals, exactly, legal_color};
 use crate::verify::uploaded::expected_view;
 
@@ -59,13 +59,8 @@ impl<'a> PictureCheck<'a> {
 
     /// Finds the spheres that may be hit, and their colours.
     fn find(&self, pixel: [u32; 2], hits: &mut LegalHits, colors: &mut Vec<LegalColor>) {
-        let mut ray = self.model.ray(pixel).any(&self.model);
-        ray.slack.across += PAD * self.moved;
-        ray.slack.along += PAD * self.moved;
-        if ray.may_hit_box {
-            hits.find_nearer(&self.checker.candidates, &ray.line, ray.slack, |_| false);
-            hits.miss |= ray.may_miss_box;
-        }
+        let ray = self.model.ray(pixel).any(&self.model).moved(self.moved);
+        ray.find(&self.checker.candidates, hits);
         let scene = self.checker.scene;
         for hit in &hits.spheres {
             let normals = LegalNormals::new(&ray.line, scene.spheres()[hit.id as usize], ray.slack);
