@@ -111,6 +111,14 @@ impl FinishedCertificate {
         let is_exact = share(PixelVerdict::Exact) >= LEAST_EXACT;
         if is_known && is_exact { Outcome::Proved } else { Outcome::Undecided }
     }
+
+    /// The outcome for a device that rendered the picture just now, so that nobody chose which pixels are open: as for
+    /// other checks of devices, at most [`MOST_UNDECIDED`](super::MOST_UNDECIDED) of all pixels may be wide or open.
+    #[must_use]
+    pub fn outcome_of_device(&self) -> Outcome {
+        let undecided = self.count(PixelVerdict::Wide) + self.count(PixelVerdict::Open);
+        Outcome::of(self.count(PixelVerdict::Violated) > 0, undecided as u64, self.verdicts.len() as u64)
+    }
 }
 
 impl Checker<'_> {

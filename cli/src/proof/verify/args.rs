@@ -67,7 +67,8 @@ pub(crate) const AFTER_HELP: &str = "The check covers the data on the device and
     Exit codes: 0 every pixel is as a conforming device may have made it; 1 the job failed, or there is no adapter, \
     or RUN is damaged; 2 wrong usage; 3 the picture is not legal; 4 no violation was found, but more than 1 % of the \
     pixels have several legal answers, or of the stages of light paths or the denoised pixels have bounds so wide that \
-    they say little.\n\n\
+    they say little, or more than 1 % of the pixels that `render` gives differ from what exact arithmetic gives and are not \
+    known to be legal.\n\n\
     JSON: `version`, `adapter` (name, backend, device_type, driver, driver_info, limits), `scene` (spheres, sha256), \
     `picture` (width, height, camera, y_axis, shading, structure), `counts` (decided, silhouette, tie, violation), \
     `decided_fraction`, `worst_depth` and `worst_normal` (as fractions of their bounds), `upload` (null, or what is \
@@ -78,6 +79,7 @@ pub(crate) const AFTER_HELP: &str = "The check covers the data on the device and
     undecided: pixel, sample, surface, stage, is_undecided, legal: of an open search, up to four legal answers), upload, \
     violation_count, violations, outcome, legal), `studio` (only with the integrator `studio`: samples, \
      stages and so on), `denoiser` (only if the picture is denoised: pixels, undecided, violation_count, violations, \
-     outcome), `biased` (quantities whose results lie to one side of the middle of their bounds, in words), `outcome` \
+     outcome), `rendered` (only with light: the picture as `render` makes it, samples, of_samples, pixels (exact, legal, \
+    wide, open, violated), violation, outcome), `biased` (quantities whose results lie to one side of the middle of their bounds, in words), `outcome` \
     (proved, undecided, violated), `legal`, `command`. `version` and `command` are those of the program \
     that rendered. New versions may add keys, but do not change these.";

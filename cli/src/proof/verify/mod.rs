@@ -10,6 +10,7 @@ use crate::proof::verify::report::{Report, open_pixels};
 use crate::terminal::failure::Failure;
 use crate::terminal::progress::{self, answer};
 use pinhole::verify::denoised::DenoiseCertificate;
+use pinhole::verify::finished::{FinishedCertificate, PixelVerdict};
 use pinhole::verify::{Certificate, Checker, LitCertificate, MOST_UNDECIDED, Outcome, Verdict};
 
 pub(crate) mod args;
@@ -24,7 +25,7 @@ pub(crate) fn run(args: &VerifyArgs) -> Result<(), Failure> {
     if let (Some(scene), Some(picture)) = (&args.scene, &args.path) {
         return picture::run(args, picture, scene);
     }
-    let VerifyJob { run, outputs, light, denoiser, kept } = match (&args.replay, &args.path) {
+    let VerifyJob { run, outputs, light, denoiser, rendered, kept } = match (&args.replay, &args.path) {
         (Some(path), _) => output::replay(path, args)?,
         #[cfg(feature = "gpu")]
         (None, Some(path)) => record::recorded(path, args)?,
@@ -41,6 +42,9 @@ pub(crate) fn run(args: &VerifyArgs) -> Result<(), Failure> {
     let checker = Checker::new(&run.scene).context("the checker cannot be prepared")?;
     let certificate = checker.certify(&run.recording);
     let mut report = Report::new(&run, &certificate, light.as_ref(), denoiser.as_ref());
+    if let (Some(judged), Some(shown)) = (&rendered, &kept.shown) {
+        report.judge_rendered(judged, shown);
+    }
     report.open = open_pixels(&checker, &run.recording, &certificate);
     drop(checker);
     progress::clear();
@@ -48,7 +52,8 @@ pub(crate) fn run(args: &VerifyArgs) -> Result<(), Failure> {
     outputs.write(&run, &certificate, &report, &kept)?;
     let of_light = light.as_ref().map_or(Ok(()), verdict_of_light);
     let of_denoiser = denoiser.as_ref().map_or(Ok(()), verdict_of_denoiser);
-    worse(worse(verdict(&certificate), of_light), of_denoiser)
+    let of_rendered = rendered.as_ref().map_or(Ok(()), verdict_of_rendered);
+    worse(worse(worse(verdict(&certificate), of_light), of_denoiser), of_rendered)
 }
 
 /// Returns the first failure, except that a violation takes precedence over an undecided check.
@@ -107,4 +112,17 @@ fn verdict_of_denoiser(certificate: &DenoiseCertificate) -> Result<(), Failure> 
     }
     let count = format!("{violation_count} of {pixels} pixels");
     none_illegal("the denoised picture is", &count, certificate.violations.first())
+}
+
+fn verdict_of_rendered(certificate: &FinishedCertificate) -> Result<(), Failure> {
+    let all = certificate.verdicts.len();
+    let count = |verdict| certificate.count(verdict);
+    if certificate.outcome_of_device() == Outcome::Undecided {
+        let vague = count(PixelVerdict::Wide) + count(PixelVerdict::Open);
+        let first = certificate.open.first().map(|first| format!(", first {first}")).unwrap_or_default();
+        let what = "pixels that `render` gives differ from what exact arithmetic gives, with bounds that say little";
+        return Err(undecided(&format!("{vague} of {all} {what}{first}")));
+    }
+    let count = format!("{} of {all} pixels", count(PixelVerdict::Violated));
+    none_illegal("the picture that `render` gives is", &count, certificate.violations.first())
 }

@@ -17,6 +17,7 @@ use crate::terminal::text::json;
 use crate::terminal::{progress, threads};
 use pinhole::image::Image;
 use pinhole::verify::denoised::DenoiseCertificate;
+use pinhole::verify::finished::FinishedCertificate;
 use pinhole::verify::run_file::{self, Extras, FinalPicture, LitSamples, Run, RunFile};
 use pinhole::verify::{Certificate, Checker, LitCertificate};
 
@@ -28,6 +29,8 @@ pub(crate) struct VerifyJob {
     pub(crate) light: Option<LitCertificate>,
     /// The certificate of the denoiser, if the scene asks for it.
     pub(crate) denoiser: Option<DenoiseCertificate>,
+    /// The verdicts about the picture that `render` makes with light, if it was judged.
+    pub(crate) rendered: Option<FinishedCertificate>,
     /// Data about the light, for a run file and the page.
     pub(crate) kept: KeptLight,
 }
@@ -64,7 +67,7 @@ pub(crate) fn replay(path: &Path, args: &VerifyArgs) -> Result<VerifyJob, Failur
     let denoised = file.denoised().with_context(of_file)?;
     let denoiser = denoised.as_ref().map(report::judge).transpose()?;
     let kept = KeptLight { shown: file.shown().with_context(of_file)?, ..KeptLight::default() };
-    Ok(VerifyJob { run, outputs, light: has_light.then_some(certificate), denoiser, kept })
+    Ok(VerifyJob { run, outputs, light: has_light.then_some(certificate), denoiser, rendered: None, kept })
 }
 
 const PAGE: &str = "report.html";

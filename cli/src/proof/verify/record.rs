@@ -3,17 +3,20 @@
 use std::cell::RefCell;
 use std::collections::BTreeSet;
 use std::path::Path;
+use std::sync::Arc;
 
 use anyhow::{Context, anyhow};
 
 use crate::input::{Input, Source};
 use crate::output::files;
+use crate::output::picture::{Outputs, PictureFormat};
+use crate::proof::certified::{self, FilePicture};
 use crate::proof::self_test;
 use crate::proof::verify::args::VerifyArgs;
 use crate::proof::verify::output::{KeptLight, VerifyJob, VerifyOutputs};
 use crate::proof::verify::report::{self, command_line};
 use crate::render;
-use crate::render::device::{AdapterReport, WantedAdapter, explained_alone};
+use crate::render::device::{AdapterReport, OpenDevice, WantedAdapter, explained_alone};
 use crate::render::views::views_of;
 use crate::render::with_scene::{upload, with_structures};
 use crate::terminal::failure::Failure;
@@ -27,6 +30,7 @@ use pinhole::image::color::to_srgb8;
 use pinhole::image::denoise::GUIDES;
 use pinhole::image::encoding::Encoding;
 use pinhole::image::{Image, LayerSet};
+use pinhole::verify::finished::FinishedCertificate;
 use pinhole::verify::run_file::{self, FinalPicture, LitSamples, Provenance, Run};
 use pinhole::verify::{Checker, LitCertificate, LitRecording};
 
@@ -90,11 +94,14 @@ pub(crate) fn recorded(path: &Path, args: &VerifyArgs) -> Result<VerifyJob, Fail
         kept.denoised = Some(render_denoised(&headless, &input, choice)?);
     }
     let denoiser = kept.denoised.as_ref().map(report::judge).transpose()?;
-    if is_lit && (args.report.is_some() || args.save.is_some()) {
-        kept.shown = Some(render_lit(&headless, &input, choice)?);
+    let scene = input.scene.clone();
+    let mut rendered = None;
+    if is_lit {
+        let (judged, shown) = judged_picture(input, headless, choice)?;
+        (rendered, kept.shown) = (Some(judged), Some(shown));
     }
-    let run = Run { scene: std::sync::Arc::unwrap_or_clone(input.scene), recording, provenance };
-    Ok(VerifyJob { run, outputs, light, denoiser, kept })
+    let run = Run { scene: Arc::unwrap_or_clone(scene), recording, provenance };
+    Ok(VerifyJob { run, outputs, light, denoiser, rendered, kept })
 }
 
 fn provenance(headless: &Headless, structure: Structure) -> Provenance {
@@ -245,32 +252,29 @@ fn shrunk(film: &Film, longest: u32) -> Result<Film, FilmError> {
     Ok(Film::new(shrink(width), shrink(height))?.with_y_axis(film.y_axis()))
 }
 
-/// Number of samples. More would take long, and change little at the size of the picture on the page.
-const SHOWN_SAMPLES: u32 = 16;
+/// The most samples of the picture that is judged as a whole. More would take long, and the program takes them alike.
+const PICTURE_SAMPLES: u32 = 16;
 
-/// Renders the scene with its light and few samples, in the view that is checked.
-pub(crate) fn render_lit(headless: &Headless, input: &Input, choice: AccelChoice) -> Result<FinalPicture, Failure> {
-    let mut settings = input.settings.clone();
-    let wanted = settings.sampling.samples;
-    settings.sampling.samples = wanted.min(SHOWN_SAMPLES);
-    settings.is_transparent = false;
-    let background = settings.visible_background();
+/// Renders the view that is checked as `render` does, with its light but few samples, and judges every pixel.
+fn judged_picture(
+    mut input: Input,
+    headless: Headless,
+    choice: AccelChoice,
+) -> Result<(FinishedCertificate, FinalPicture), Failure> {
+    let wanted = input.settings.sampling.samples;
+    let samples = wanted.min(PICTURE_SAMPLES);
+    input.settings.sampling.samples = samples;
+    input.eyes = None;
+    input.settings.is_transparent = input.encoding.transparent;
     let mut encoding = input.encoding;
-    (encoding.transparent, encoding.background) = (false, background);
-    let layers = encoding.layers();
-    let (view, views) = (input.view(), views_of(input, input.film));
-    let plan = |choice| render::plan(headless, input, &views, layers, choice);
-    let done = with_structures(headless, choice, plan, |plan| {
-        interrupt::on_device(|| {
-            let buffers = upload(headless, &input.scene, plan)?;
-            progress::stage("rendering with light");
-            let watch = &mut |_: &_| interrupt::decide();
-            headless.render_uploaded(&buffers, &view, &settings, layers, watch).wait()
-        })
-    })?;
-    let (picture, _) = done.map_err(|error| explained_alone(headless, &error))?;
-    let samples = settings.sampling.samples;
-    Ok(shown(&picture.image, &encoding, samples, wanted))
+    encoding.background = input.settings.visible_background();
+    let outputs = Outputs::unwritten(PictureFormat::Png);
+    let opened = OpenDevice::Device { headless: Box::new(headless), choice, warning: None };
+    let image = render::render(&input, outputs.layers(&encoding), &opened)?;
+    let written = FilePicture::of(&image, &encoding, &outputs)?;
+    let certificate = certified::judge(&input, &encoding, &outputs, &written)?;
+    encoding.background = Some(input.settings.background);
+    Ok((certificate, shown(&image, &encoding, samples, wanted)))
 }
 
 /// Encodes the picture as the scene specifies, but with its background.

@@ -10,7 +10,8 @@ use crate::terminal::text::in_quotes;
 use pinhole::image::Image;
 use pinhole::internals::text::{one_line, whole_line};
 use pinhole::verify::denoised::{self, DenoiseCertificate};
-use pinhole::verify::run_file::{Run, scene_sha256};
+use pinhole::verify::finished::{FinishedCertificate, PixelVerdict};
+use pinhole::verify::run_file::{FinalPicture, Run, scene_sha256};
 use pinhole::verify::{
     Certificate, Checker, Deviations, LitCertificate, LitOpen, LitShare, LitViolation, Outcome, Recording, StageCounts,
     UploadError, Verdict, Violation,
@@ -40,6 +41,9 @@ pub(crate) struct Report<'a> {
     /// The check of the denoiser, for a scene whose picture is denoised.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub(crate) denoiser: Option<DenoiserReport<'a>>,
+    /// The check of the picture that `render` makes, for a scene with light.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub(crate) rendered: Option<RenderedReport>,
     /// Quantities whose results lie to one side of the middle of their bounds: notes, not violations.
     pub(crate) biased: Vec<String>,
     pub(crate) outcome: Outcome,
@@ -107,6 +111,7 @@ impl<'a> Report<'a> {
             paths: light.filter(|light| !light.is_studio).map(LightReport::new),
             studio: light.filter(|light| light.is_studio).map(LightReport::new),
             denoiser: denoiser.map(|found| DenoiserReport { certificate: found, outcome: found.outcome() }),
+            rendered: None,
             biased: [Some(&certificate.deviations), light.map(|light| &light.deviations)]
                 .into_iter()
                 .flatten()
@@ -119,6 +124,19 @@ impl<'a> Report<'a> {
             certificate,
             open: Vec::new(),
         }
+    }
+
+    /// Adds the verdicts about the picture that `render` makes with light.
+    pub(crate) fn judge_rendered(&mut self, judged: &FinishedCertificate, shown: &FinalPicture) {
+        self.outcome = self.outcome.max(judged.outcome_of_device());
+        self.legal = self.outcome == Outcome::Proved;
+        self.rendered = Some(RenderedReport {
+            samples: shown.samples,
+            of_samples: shown.wanted,
+            pixels: PixelVerdict::ALL.iter().map(|verdict| (verdict.name(), judged.count(*verdict))).collect(),
+            violation: judged.violations.first().map(ToString::to_string),
+            outcome: judged.outcome_of_device(),
+        });
     }
 
     /// The check of light, if there is one.
@@ -140,7 +158,9 @@ impl<'a> Report<'a> {
             }
             (false, Some(_), _) => "NOT legal: the data on the device are not those of this scene and view".to_owned(),
             (false, None, 0) if self.light().is_none_or(LightReport::is_without_fault) => {
-                "NOT legal: violations in the denoised picture".to_owned()
+                let is_denoiser = self.denoiser.as_ref().is_some_and(|found| found.outcome == Outcome::Violated);
+                let what = if is_denoiser { "denoised picture" } else { "picture that `render` gives" };
+                format!("NOT legal: violations in the {what}")
             }
             (false, None, 0) if self.studio.is_some() => "NOT legal: violations in the light of the studio".to_owned(),
             (false, None, 0) => "NOT legal: violations in the light paths".to_owned(),
@@ -156,10 +176,11 @@ impl<'a> Report<'a> {
         let adapter = one_line(&self.adapter.adapter.line());
         let light = self.light().map_or(String::new(), LightReport::lines);
         let denoiser = self.denoiser.as_ref().map_or(String::new(), DenoiserReport::line);
+        let rendered = self.rendered.as_ref().map_or(String::new(), RenderedReport::line);
         format!(
             "adapter: {adapter}\nscene: {spheres} spheres, {} bytes, sha256 {sha256}\n\
              picture: {width}x{height}, {camera} camera\n\
-             structure: {structure}\n{}\n{light}{denoiser}{}\n",
+             structure: {structure}\n{}\n{light}{denoiser}{rendered}{}\n",
             16 * spheres,
             self.certificate,
             self.verdict()
@@ -301,6 +322,26 @@ impl DenoiserReport<'_> {
         let DenoiseCertificate { pixels, undecided, violation_count, .. } = self.certificate;
         let legal = pixels - undecided - violation_count;
         format!("denoiser: {pixels} pixels: {legal} legal, {undecided} undecided, {violation_count} violations\n")
+    }
+}
+
+/// The object `rendered` of the JSON document.
+#[derive(Serialize)]
+pub(crate) struct RenderedReport {
+    samples: u32,
+    of_samples: u32,
+    /// The number of pixels with each verdict.
+    pixels: BTreeMap<&'static str, usize>,
+    violation: Option<String>,
+    outcome: Outcome,
+}
+
+impl RenderedReport {
+    fn line(&self) -> String {
+        let Self { samples, of_samples, pixels, .. } = self;
+        let count = |verdict: &PixelVerdict| format!("{} {}", pixels[verdict.name()], verdict.name());
+        let counts: Vec<_> = PixelVerdict::ALL.iter().map(count).collect();
+        format!("picture of render, {samples} of {of_samples} samples: pixels: {}\n", counts.join(", "))
     }
 }
 
