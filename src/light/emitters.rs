@@ -1,6 +1,6 @@
 //! The emissive spheres of a scene, and the random choice of one by power.
 
-use crate::image::color::luminance;
+use crate::image::color::{LinearRgb, luminance};
 use crate::scene::material::{Material, SurfaceProperties};
 use crate::scene::{Duplicates, Scene};
 
@@ -12,6 +12,27 @@ use crate::scene::{Duplicates, Scene};
 pub struct Emitters {
     ids: Vec<u32>,
     last: Vec<u32>,
+}
+
+/// A sphere that emits light.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct EmissiveSphere {
+    /// Centre in the scene's frame, and radius.
+    pub(crate) sphere: [f32; 4],
+    pub(crate) color: LinearRgb,
+    pub(crate) surface: SurfaceProperties,
+}
+
+impl EmissiveSphere {
+    /// The spheres of `emitters`, in the same order.
+    pub(crate) fn all(scene: &Scene, emitters: &Emitters) -> Vec<Self> {
+        let emissive = |id: &u32| Self {
+            sphere: scene.spheres()[*id as usize],
+            color: scene.color(*id),
+            surface: scene.surface(*id),
+        };
+        emitters.ids.iter().map(emissive).collect()
+    }
 }
 
 impl Emitters {

@@ -6,12 +6,12 @@ use crate::camera::CameraVectors;
 use crate::geometry::math::unit;
 use crate::image::color::LinearRgb;
 use crate::light::codes::{self, lighting as flags};
-use crate::light::emitters::Emitters;
+use crate::light::emitters::{EmissiveSphere, Emitters};
 use crate::light::energy::EnergyTables;
 use crate::light::environment::Environment;
 use crate::light::{LightKind, Sky, SkyLight};
 use crate::recording::NO_HIT;
-use crate::recording::lit::UploadedLighting;
+use crate::recording::lit::{UploadedLighting, UploadedSky};
 use crate::render::{Integrator, LightSampling, RenderSettings};
 use crate::scene::SceneAppearance;
 use crate::scene::material::{Material, SurfaceProperties};
@@ -210,5 +210,32 @@ fn material_record(color: LinearRgb, surface: &SurfaceProperties, energies: u32)
             record(ior, roughness, absorption)
         }
         Material::Emissive { strength } => record(strength, 0.0, [0.0; 3]),
+    }
+}
+
+/// The records of the emitters in the layout of `shaders/scene/emitter.wgsl`.
+pub(crate) fn emitter_records(emitters: &Emitters, emissive: &[EmissiveSphere]) -> Vec<[f32; 4]> {
+    let records = emitters.ids().iter().zip(emissive).enumerate().flat_map(|(index, (id, emissive))| {
+        let EmissiveSphere { sphere, color, surface } = *emissive;
+        // A surface that is not opaque emits the fraction of light that its opacity gives.
+        let strength = match surface.material {
+            Material::Emissive { strength } => strength * surface.opacity,
+            _ => 0.0,
+        };
+        let probability = emitters.probability(*id) as f32;
+        let [r, g, b] = color.to_array().map(|c| c * strength);
+        [sphere, [f32::from_bits(*id), f32::from_bits(emitters.last_picks()[index]), probability, 0.0], [r, g, b, 0.0]]
+    });
+    records.collect()
+}
+
+/// The image of a sky, as a device gets it.
+pub(crate) fn uploaded_sky(settings: &RenderSettings) -> Option<UploadedSky> {
+    match &settings.sky.light {
+        SkyLight::Image { environment, .. } => Some(UploadedSky {
+            texels: environment.texels().to_vec(),
+            shares: environment.rows().iter().chain(environment.columns()).copied().collect(),
+        }),
+        SkyLight::Constant(_) | SkyLight::Gradient { .. } => None,
     }
 }

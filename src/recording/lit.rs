@@ -217,8 +217,8 @@ impl PathState {
 
     /// The surface that the path leaves.
     pub(crate) fn departure(&self) -> Departure {
-        let [id, shape_index, exit_distance, emitter] = self.slots[slot::DEPARTURE];
-        Departure { id, shape_index, exit_distance: f32::from_bits(exit_distance), emitter }
+        let [id, _, exit_distance, emitter] = self.slots[slot::DEPARTURE];
+        Departure { id, exit_distance: f32::from_bits(exit_distance), emitter }
     }
 
     pub(crate) fn flags(&self) -> u32 {
@@ -235,8 +235,6 @@ impl PathState {
 pub(crate) struct Departure {
     /// Id of the sphere; [`NO_ID`](crate::image::NO_ID) for none.
     pub(crate) id: u32,
-    /// Index of the sphere on the device.
-    pub(crate) shape_index: u32,
     /// Exit distance of the sphere if the path goes inside; else 0.
     pub(crate) exit_distance: f32,
     /// Index of the sampled emitter, or [`NO_EMITTER`].

@@ -16,7 +16,7 @@ use crate::parallel::{map_parts, ranges};
 use crate::recording::pixel_at;
 use crate::render::RenderSettings;
 use crate::verify::lit::check::LitCheck;
-use crate::verify::studio::forward;
+use crate::verify::lit::forward;
 use crate::verify::{Checker, Interval, Verdict};
 
 /// The least share of exact pixels in a picture that is proved.
@@ -136,7 +136,11 @@ impl Checker<'_> {
             return Vec::new();
         }
         match forward::inputs(self, view, settings) {
-            Some(inputs) => LitCheck::new(self, &inputs).finished_light(indices),
+            Some(inputs) => {
+                let mut check = LitCheck::new(self, &inputs);
+                check.brightest = check.most_light_of_paths();
+                check.finished_light(indices)
+            }
             None => vec![None; indices.len()],
         }
     }

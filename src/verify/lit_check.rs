@@ -86,7 +86,7 @@ impl LitCheck<'_> {
         }
         let color = match self.is_studio {
             true => Vector::recorded(state.vector(slot::RADIANCE)),
-            false => radiance_so_far(&state),
+            false => radiance_so_far(&RayState::recorded(state)),
         };
         let sums = check_sums(color, &state, &recorded.film, index);
         part.note(LitStage::Accumulate, address, sums);

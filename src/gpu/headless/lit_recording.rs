@@ -15,8 +15,8 @@ use crate::gpu::passes::lit::{LightingData, LitPasses, LitScene, LitSizes, Momen
 use crate::gpu::passes::tiles::Tile;
 use crate::gpu::scene::scene_buffers::SceneBuffers;
 use crate::gpu::shader::records::SceneSpace;
-use crate::light::SkyLight;
-use crate::recording::lit::{LitInputs, LitRecording, RecordedFilm, UploadedSky};
+use crate::recording::lighting::uploaded_sky;
+use crate::recording::lit::{LitInputs, LitRecording, RecordedFilm};
 use crate::render::RenderSettings;
 
 /// Callback with the recording of each sample.
@@ -210,16 +210,6 @@ fn inputs_in(
         tables: lighting.tables.iter().map(|four| four.map(f32::to_bits)).collect(),
         emitters: lighting.emitters.iter().map(|four| four.map(f32::to_bits)).collect(),
         sky: uploaded_sky(settings),
-    }
-}
-
-fn uploaded_sky(settings: &RenderSettings) -> Option<UploadedSky> {
-    match &settings.sky.light {
-        SkyLight::Image { environment, .. } => Some(UploadedSky {
-            texels: environment.texels().to_vec(),
-            shares: environment.rows().iter().chain(environment.columns()).copied().collect(),
-        }),
-        SkyLight::Constant(_) | SkyLight::Gradient { .. } => None,
     }
 }
 

@@ -8,8 +8,6 @@ use wgpu::{
 };
 
 use crate::accel::PlannedBuffer;
-use crate::gpu::scene::scene_summary::{EmissiveSphere, SceneSummary};
-use crate::scene::material::Material;
 
 /// Width of the texture, the twin of `EMITTER_COLUMNS` in `shaders/scene/emitter.wgsl`. Every
 /// device has textures of this size.
@@ -91,22 +89,6 @@ pub(crate) fn upload(device: &Device, queue: &Queue, table: &[[f32; 4]]) -> Text
     texture.create_view(&TextureViewDescriptor {
         dimension: Some(TextureViewDimension::D2Array),
         ..TextureViewDescriptor::default()
-    })
-}
-
-/// The records of the emitters in the layout of `shaders/scene/emitter.wgsl`.
-pub(crate) fn records(scene: &SceneSummary) -> impl Iterator<Item = [f32; 4]> {
-    let emitters = &scene.emitters;
-    emitters.ids().iter().zip(&scene.emissive).enumerate().flat_map(|(index, (id, emissive))| {
-        let EmissiveSphere { sphere, color, surface } = *emissive;
-        // A surface that is not opaque emits the fraction of light that its opacity gives.
-        let strength = match surface.material {
-            Material::Emissive { strength } => strength * surface.opacity,
-            _ => 0.0,
-        };
-        let probability = emitters.probability(*id) as f32;
-        let [r, g, b] = color.to_array().map(|c| c * strength);
-        [sphere, [f32::from_bits(*id), f32::from_bits(emitters.last_picks()[index]), probability, 0.0], [r, g, b, 0.0]]
     })
 }
 

@@ -8,8 +8,7 @@ use glam::DVec3;
 
 use crate::gpu::shader::Constant;
 use crate::image::color::LinearRgb;
-use crate::light::emitters::Emitters;
-use crate::scene::material::SurfaceProperties;
+use crate::light::emitters::{EmissiveSphere, Emitters};
 use crate::scene::{Duplicates, Scene, SceneAppearance};
 
 /// Palette, surfaces and emissive spheres of a scene.
@@ -23,30 +22,16 @@ pub(crate) struct SceneSummary {
     pub(crate) emissive: Vec<EmissiveSphere>,
 }
 
-/// A sphere that emits light.
-#[derive(Clone, Copy, Debug)]
-pub(crate) struct EmissiveSphere {
-    /// Centre in the scene's frame, and radius.
-    pub(crate) sphere: [f32; 4],
-    pub(crate) color: LinearRgb,
-    pub(crate) surface: SurfaceProperties,
-}
-
 impl SceneSummary {
     /// Size of an emissive sphere in bytes.
     pub(crate) const BYTES_PER_EMITTER: u64 = 8 + size_of::<EmissiveSphere>() as u64;
 
     pub(crate) fn of(scene: &Scene) -> Self {
         let emitters = Emitters::of(scene);
-        let emissive = |id: &u32| EmissiveSphere {
-            sphere: scene.spheres()[*id as usize],
-            color: scene.color(*id),
-            surface: scene.surface(*id),
-        };
         Self {
             origin: scene.origin(),
             appearance: Arc::clone(scene.checked_appearance()),
-            emissive: emitters.ids().iter().map(emissive).collect(),
+            emissive: EmissiveSphere::all(scene, &emitters),
             emitters,
         }
     }

@@ -15,6 +15,8 @@ pub(crate) struct LitCheck<'a> {
     pub(crate) model: CameraModel,
     pub(crate) is_studio: bool,
     pub(crate) is_matt: bool,
+    /// The brightest light at the end of a path and at its surfaces, if that is needed and has a bound.
+    pub(crate) brightest: Option<[[f64; 3]; 2]>,
 }
 
 impl<'a> LitCheck<'a> {
@@ -30,6 +32,7 @@ impl<'a> LitCheck<'a> {
             model: CameraModel::new(inputs.camera.kind, &inputs.uploaded, &inputs.film),
             is_studio: inputs.is_studio(),
             is_matt: checker.scene.appearance().surfaces().iter().all(is_matt),
+            brightest: None,
         }
     }
 }

@@ -53,6 +53,11 @@ impl RayState {
         self.numbers[slot][3]
     }
 
+    /// A number of a slot, by its index from 0 to 3.
+    pub(crate) fn number_at(&self, [slot, index]: [usize; 2]) -> Number {
+        self.numbers[slot][index]
+    }
+
     pub(crate) fn has(&self, flag: u32) -> bool {
         self.raw.has(flag)
     }
@@ -126,11 +131,11 @@ impl<'a> Kernel<'a> {
 }
 
 impl<'a> Kernel<'a> {
-    /// The recorded result. Kernels of paths have no other.
-    pub(crate) fn recorded(&self) -> &'a PathState {
+    /// Three recorded numbers of a slot of the result, if it was recorded.
+    pub(crate) fn recorded(&self, slot: usize) -> Option<Vector> {
         match self.after {
-            Output::Recorded(after) => after,
-            Output::Legal(_) => &PathState::EMPTY,
+            Output::Recorded(after) => Some(Vector::recorded(after.vector(slot))),
+            Output::Legal(_) => None,
         }
     }
 

@@ -10,8 +10,10 @@
 pub(crate) mod certificate;
 pub(super) mod check;
 pub(super) mod film;
+pub(super) mod forward;
 pub(super) mod judge;
 pub(super) mod kernel;
+mod legal_picture;
 pub(super) mod sampling;
 pub(super) mod search;
 pub(super) mod upload;

@@ -3,10 +3,10 @@
 
 use crate::image::NO_ID;
 use crate::light::codes::material::{DIELECTRIC, EMISSIVE};
-use crate::recording::lit::{PathState, flag, slot};
+use crate::recording::lit::{flag, slot};
 use crate::verify::lit::certificate::{Address, LitStage};
 use crate::verify::lit::judge::{Mismatch, Name};
-use crate::verify::lit::kernel::{Kernel, Vertex, unit};
+use crate::verify::lit::kernel::{Kernel, Output, RayState, Vertex, unit};
 use crate::verify::lit::sampling::{Axes, Material, axes_around};
 use crate::verify::number::{Number, Vector};
 use crate::verify::rounding::{FLUSH, U};
@@ -45,43 +45,44 @@ impl Kernel<'_> {
     }
 
     pub(crate) fn follow(&mut self) -> Result<(), Mismatch> {
-        let (before, after) = (&self.before.raw, self.recorded());
+        let before = self.before;
         let radiance_so_far = radiance_so_far(before);
         let alpha = before.number(slot::RADIANCE);
-        let through = Vector::recorded(before.vector(slot::THROUGHPUT));
+        let through = before.vector(slot::THROUGHPUT);
         let Some(vertex) = self.vertex()? else {
             let light = self.light_of_miss();
             return self.end(radiance_so_far + through.times(light), alpha);
         };
-        let medium = Vector::recorded(before.vector(slot::MEDIUM));
+        let medium = before.vector(slot::MEDIUM);
         let arriving = if self.is_matt { through } else { through.times(medium.map(|m| (-m * vertex.distance).exp())) };
-        self.compare_departure(&vertex)?;
+        self.write_departure(&vertex)?;
         if self.is_passed(&vertex) {
             return self.pass(&vertex, radiance_so_far, arriving);
         }
         let is_seen = !before.has(flag::SCATTERED);
-        if is_seen && before.number(slot::FIRST) >= 0.0 {
+        // A distance is not negative, but its bound may be.
+        if is_seen && before.number(slot::FIRST).interval().high >= 0.0 {
             let first = Vector::recorded(vertex.color).map(|c| c.min(Number::ONE));
-            self.judge.vector(FIRST, after.vector(slot::FIRST), first)?;
-            self.judge.bits(FIRST, after.bits(slot::FIRST), (-1.0_f32).to_bits())?;
+            self.write(FIRST, slot::FIRST, first, 0.0)?;
+            self.write_number(FIRST, [slot::FIRST, 3], Number::known(-1.0), 0.0)?;
         } else {
-            self.judge.same(FIRST, [before, after], slot::FIRST)?;
+            self.same(&[slot::FIRST])?;
         }
         let material = self.material_of(&vertex);
         if material.kind == EMISSIVE {
             let density = self.density_of_hit_emitter(self.hit.id, before.vector(slot::ORIGIN));
             let weight = self.weight_of_hit_light(density);
             let light = Vector::recorded(vertex.color) * material.parameter * weight;
-            self.compare_radiance(radiance_so_far + arriving.times(light), Number::ONE)?;
-            return self.stop();
+            self.write_radiance(radiance_so_far + arriving.times(light), Number::ONE)?;
+            return self.stop(&vertex);
         }
         let axes = axes_around(vertex.normal, self.choices);
-        let out = axes.to_local(-Vector::recorded(before.vector(slot::DIRECTION)));
+        let out = axes.to_local(-before.vector(slot::DIRECTION));
         let at = Surface { vertex, material, axes, out };
         let light = self.head_light(&at, is_seen);
-        self.compare_radiance(radiance_so_far + arriving.times(light), Number::ONE)?;
+        self.write_radiance(radiance_so_far + arriving.times(light), Number::ONE)?;
         if self.is_last() {
-            return self.stop();
+            return self.stop(&at.vertex);
         }
         self.sample_light(&at, arriving)?;
         self.bounce(&at, arriving)
@@ -99,101 +100,110 @@ impl Kernel<'_> {
         self.choices.decide((!is_open).then_some(pass >= opacity))
     }
 
-    /// Compares the sphere that the path leaves, and its exit distance along the next ray.
-    fn compare_departure(&mut self, at: &Vertex) -> Result<(), Mismatch> {
-        let (after, departure) = (self.recorded(), self.recorded().departure());
+    /// Writes the sphere that the path leaves.
+    fn write_departure(&mut self, at: &Vertex) -> Result<(), Mismatch> {
         let (id, shape_index) = if at.is_sphere() { (self.hit.id, self.hit.shape_index) } else { (NO_ID, 0) };
-        self.judge.bits(DEPARTURE, departure.id, id)?;
-        self.judge.bits(DEPARTURE, departure.shape_index, shape_index)?;
-        let exit_distance = if after.has(flag::INSIDE) {
-            at.exit_distance(Vector::recorded(after.vector(slot::DIRECTION)))
-        } else {
-            Number::ZERO
+        self.write_bits(DEPARTURE, [slot::DEPARTURE, 0], id)?;
+        self.write_bits(DEPARTURE, [slot::DEPARTURE, 1], shape_index)
+    }
+
+    /// Writes the exit distance of the sphere that the path leaves, along the next ray.
+    fn write_exit_distance(&mut self, at: &Vertex) -> Result<(), Mismatch> {
+        let (flags, direction) = match &self.after {
+            Output::Recorded(after) => (after.flags(), Vector::recorded(after.vector(slot::DIRECTION))),
+            Output::Legal(after) => (after.raw.flags(), after.vector(slot::DIRECTION)),
         };
-        self.judge.number(EXIT_DISTANCE, departure.exit_distance, exit_distance)
+        let is_inside = flags & flag::INSIDE != 0;
+        let exit_distance = if is_inside { at.exit_distance(direction) } else { Number::ZERO };
+        self.write_number(EXIT_DISTANCE, [slot::DEPARTURE, 2], exit_distance, 0.0)
     }
 
     pub(crate) fn same(&mut self, slots: &[usize]) -> Result<(), Mismatch> {
         const KEPT: Name = (LitStage::Scatter, "an unchanged part of the path's state");
-        let states = [&self.before.raw, self.recorded()];
-        slots.iter().try_for_each(|slot| self.judge.same(KEPT, states, *slot))
+        match self.after {
+            Output::Recorded(after) => {
+                let states = [&self.before.raw, after];
+                slots.iter().try_for_each(|slot| self.judge.same(KEPT, states, *slot))
+            }
+            Output::Legal(_) => Ok(()),
+        }
     }
 
-    fn compare_radiance(&mut self, radiance: Vector, alpha: Number) -> Result<(), Mismatch> {
-        let after = self.recorded();
-        self.judge.vector(RADIANCE, after.vector(slot::RADIANCE), radiance)?;
-        self.judge.number(ALPHA, after.number(slot::RADIANCE), alpha)
+    fn write_radiance(&mut self, radiance: Vector, alpha: Number) -> Result<(), Mismatch> {
+        self.write(RADIANCE, slot::RADIANCE, radiance, 0.0)?;
+        self.write_number(ALPHA, [slot::RADIANCE, 3], alpha, 0.0)
     }
 
-    /// Compares the pending light, and whether it must be tested for occlusion: 1 or 0.
-    pub(crate) fn compare_light(&mut self, light: Vector, open: Number) -> Result<(), Mismatch> {
-        let after = self.recorded();
-        self.judge.vector(PENDING, after.vector(slot::PENDING), light)?;
-        self.judge.number(LIGHT, after.number(slot::PENDING), open)
+    /// Writes the pending light, and whether it must be tested for occlusion: 1 or 0.
+    pub(crate) fn write_light(&mut self, light: Vector, open: Number) -> Result<(), Mismatch> {
+        self.write(PENDING, slot::PENDING, light, 0.0)?;
+        self.write_number(LIGHT, [slot::PENDING, 3], open, 0.0)
     }
 
-    /// Compares the state if no light was sampled. The direction of the light does not matter then.
-    fn compare_no_light(&mut self) -> Result<(), Mismatch> {
-        let after = self.recorded();
-        self.judge.number(LIGHT, after.number(slot::SHADOW), Number::ZERO)?;
-        self.compare_light(Vector::ZERO, Number::ZERO)
+    /// Writes the state if no light was sampled. The direction of the light does not matter then.
+    fn write_no_light(&mut self) -> Result<(), Mismatch> {
+        self.write_number(LIGHT, [slot::SHADOW, 3], Number::ZERO, 0.0)?;
+        self.write_light(Vector::ZERO, Number::ZERO)
     }
 
     /// Judges a path that ends because its ray hits nothing.
-    fn end(&mut self, radiance: Vector, alpha: f32) -> Result<(), Mismatch> {
-        let after = self.recorded();
-        self.compare_radiance(radiance, Number::recorded(alpha))?;
-        self.judge.vector(ORIGIN, after.vector(slot::ORIGIN), Vector::ZERO)?;
-        self.judge.bits(FLAGS, after.flags(), 0)?;
-        self.compare_no_light()?;
+    fn end(&mut self, radiance: Vector, alpha: Number) -> Result<(), Mismatch> {
+        self.write_radiance(radiance, alpha)?;
+        self.write(ORIGIN, slot::ORIGIN, Vector::ZERO, 0.0)?;
+        self.write_bits(FLAGS, [slot::ORIGIN, 3], 0)?;
+        self.write_no_light()?;
         self.same(&[slot::DIRECTION, slot::DEPARTURE, slot::THROUGHPUT, slot::FIRST])?;
         self.same(&[slot::MEDIUM])
     }
 
     /// Judges a path that ends on a surface. The next ray does not matter then.
-    fn stop(&mut self) -> Result<(), Mismatch> {
-        self.judge.bits(FLAGS, self.recorded().flags() & flag::ALIVE, 0)?;
-        self.compare_no_light()
+    fn stop(&mut self, at: &Vertex) -> Result<(), Mismatch> {
+        match &mut self.after {
+            Output::Recorded(after) => self.judge.bits(FLAGS, after.flags() & flag::ALIVE, 0)?,
+            Output::Legal(after) => after.raw.slots[slot::ORIGIN][3] &= !flag::ALIVE,
+        }
+        self.write_exit_distance(at)?;
+        self.write_no_light()
     }
 
     /// Judges a path that passes through a surface as if it were not there.
     fn pass(&mut self, at: &Vertex, radiance_so_far: Vector, arriving: Vector) -> Result<(), Mismatch> {
-        let (before, after) = (&self.before.raw, self.recorded());
-        self.compare_radiance(radiance_so_far, Number::recorded(before.number(slot::RADIANCE)))?;
+        let before = self.before;
+        self.write_radiance(radiance_so_far, before.number(slot::RADIANCE))?;
         self.same(&[slot::FIRST])?;
         // Glass ends at its far side, even if the path passes through that side.
         if at.is_back && self.material_of(at).kind == DIELECTRIC {
-            self.judge.vector(MEDIUM, after.vector(slot::MEDIUM), Vector::ZERO)?;
+            self.write(MEDIUM, slot::MEDIUM, Vector::ZERO, 0.0)?;
         } else {
             self.same(&[slot::MEDIUM])?;
         }
-        self.compare_no_light()?;
-        let direction = Vector::recorded(before.vector(slot::DIRECTION));
-        self.judge.vector(DIRECTION, after.vector(slot::DIRECTION), direction)?;
-        self.judge.number(DENSITY, after.number(slot::DIRECTION), Number::ZERO)?;
-        self.judge.vector(THROUGHPUT, after.vector(slot::THROUGHPUT), arriving)?;
+        self.write_no_light()?;
+        self.write(DIRECTION, slot::DIRECTION, before.vector(slot::DIRECTION), 0.0)?;
+        self.write_number(DENSITY, [slot::DIRECTION, 3], Number::ZERO, 0.0)?;
+        self.write(THROUGHPUT, slot::THROUGHPUT, arriving, 0.0)?;
         let alive = if self.is_last() { 0 } else { flag::ALIVE };
-        let scattered = before.flags() & flag::SCATTERED;
-        self.compare_flags(at, true, flag::FULL | scattered | alive)
+        let scattered = before.raw.flags() & flag::SCATTERED;
+        self.write_flags(at, true, flag::FULL | scattered | alive)
     }
 
-    /// Compares the flags, including the side of a surface on which the path continues.
-    fn compare_flags(&mut self, at: &Vertex, is_behind: bool, flags: u32) -> Result<(), Mismatch> {
+    /// Writes the flags, including the side of a surface on which the path continues.
+    fn write_flags(&mut self, at: &Vertex, is_behind: bool, flags: u32) -> Result<(), Mismatch> {
         let is_inside = at.is_sphere() && is_behind != at.is_back;
         let side = if is_inside { flag::INSIDE } else { 0 };
         let ground = if at.is_sphere() { 0 } else { flag::ON_GROUND };
-        self.judge.bits(FLAGS, self.recorded().flags(), side | ground | flags)
+        self.write_bits(FLAGS, [slot::ORIGIN, 3], side | ground | flags)?;
+        self.write_exit_distance(at)
     }
 
     /// Judges a path that a surface scatters.
     fn bounce(&mut self, at: &Surface, through: Vector) -> Result<(), Mismatch> {
-        let (after, surface) = (self.recorded(), self.address.surface);
+        let surface = self.address.surface;
         let lobe = unit(self.pair(3)[0]);
         let next = self.scatter_light(at, lobe, self.pair(2));
         let is_behind = self.choices.decide(next.direction.0[2].is_less(Number::ZERO));
         let direction = at.axes.to_world(next.direction);
-        self.judge.vector(DIRECTION, after.vector(slot::DIRECTION), direction)?;
-        self.judge.number(DENSITY, after.number(slot::DIRECTION), next.density)?;
+        self.write(DIRECTION, slot::DIRECTION, direction, 0.0)?;
+        self.write_number(DENSITY, [slot::DIRECTION, 3], next.density, 0.0)?;
 
         let carried = through.times(next.weight).fence();
         let most = carried.largest();
@@ -201,7 +211,7 @@ impl Kernel<'_> {
             if surface >= self.lighting().roulette_from { most.min(Number::constant(0.95)) } else { Number::ONE };
         let divisor = survival.max(Number::constant(1e-30));
         let carried = carried.map(|c| c / divisor);
-        self.judge.vector(THROUGHPUT, after.vector(slot::THROUGHPUT), carried)?;
+        self.write(THROUGHPUT, slot::THROUGHPUT, carried, 0.0)?;
 
         let is_glass = at.material.kind == DIELECTRIC;
         let medium = if is_glass && is_behind {
@@ -209,18 +219,17 @@ impl Kernel<'_> {
         } else {
             self.before.vector(slot::MEDIUM)
         };
-        self.judge.vector(MEDIUM, after.vector(slot::MEDIUM), medium)?;
+        self.write(MEDIUM, slot::MEDIUM, medium, 0.0)?;
 
         let draw = unit(self.pair(6)[0]);
         let is_dead = !self.choices.decide(most.is_above_zero()) || !self.choices.decide(draw.is_less(survival));
         let full = if is_glass { flag::FULL } else { 0 };
         let alive = if is_dead { 0 } else { flag::ALIVE };
-        self.compare_flags(&at.vertex, is_behind, flag::SCATTERED | full | alive)
+        self.write_flags(&at.vertex, is_behind, flag::SCATTERED | full | alive)
     }
 }
 
 /// The radiance of a path, including the pending light if it is not occluded.
-pub(crate) fn radiance_so_far(state: &PathState) -> Vector {
-    let open = Number::recorded(state.number(slot::PENDING));
-    Vector::recorded(state.vector(slot::RADIANCE)) + Vector::recorded(state.vector(slot::PENDING)) * open
+pub(crate) fn radiance_so_far(state: &RayState) -> Vector {
+    state.vector(slot::RADIANCE) + state.vector(slot::PENDING) * state.number(slot::PENDING)
 }

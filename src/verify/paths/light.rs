@@ -59,9 +59,9 @@ impl Kernel<'_> {
     }
 
     pub(crate) fn sample_light(&mut self, at: &Surface, through: Vector) -> Result<(), Mismatch> {
-        let (lighting, after) = (self.lighting(), self.recorded());
+        let lighting = self.lighting();
         if lighting.source_count == 0 {
-            self.judge.bits(EMITTER, after.departure().emitter, NO_EMITTER)?;
+            self.write_bits(EMITTER, [slot::DEPARTURE, 3], NO_EMITTER)?;
             return self.same(&[slot::SHADOW, slot::PENDING]);
         }
         let (u, [which, choice]) = (self.pair(4), self.pair(5));
@@ -77,8 +77,8 @@ impl Kernel<'_> {
         } else {
             self.sample_sky_light(u)
         };
-        self.judge.vector(DIRECTION, after.vector(slot::SHADOW), found.direction)?;
-        self.judge.bits(EMITTER, after.departure().emitter, found.emitter)?;
+        self.write(DIRECTION, slot::SHADOW, found.direction, 0.0)?;
+        self.write_bits(EMITTER, [slot::DEPARTURE, 3], found.emitter)?;
 
         let color = Vector::recorded(at.vertex.color);
         let toward = at.axes.to_local(found.direction);
@@ -91,8 +91,8 @@ impl Kernel<'_> {
         let is_open = self.is_open(at, &found, light);
         let (light, open, distance) =
             if is_open { (light, Number::ONE, found.distance) } else { (Vector::ZERO, Number::ZERO, Number::ZERO) };
-        self.judge.number(DISTANCE, after.number(slot::SHADOW), distance)?;
-        self.compare_light(light, open)
+        self.write_number(DISTANCE, [slot::SHADOW, 3], distance, 0.0)?;
+        self.write_light(light, open)
     }
 
     /// Whether light may arrive, so that occlusion must be tested.
@@ -122,7 +122,7 @@ impl Kernel<'_> {
 
     fn sample_lamp(&mut self, source: u32, position: Vector, u: [u32; 2]) -> LightSample {
         let light = self.table(3 * source + 2)[0];
-        let recorded = Some(Vector::recorded(self.recorded().vector(slot::SHADOW)));
+        let recorded = self.recorded(slot::SHADOW);
         let Lamp { direction, distance, strength, sun } = self.lamp(light, position, u, recorded);
         let sources = self.sources();
         let density = if sun.is_zero() { Number::ZERO } else { Number::ONE / (Number::TWO * pi() * sun * sources) };
@@ -168,12 +168,12 @@ impl Kernel<'_> {
     }
 
     /// The density with which light sampling would have chosen the emissive sphere that was hit.
-    pub(crate) fn density_of_hit_emitter(&mut self, id: u32, position: [f32; 3]) -> Number {
+    pub(crate) fn density_of_hit_emitter(&mut self, id: u32, position: Vector) -> Number {
         if self.lighting().emitter_count == 0 {
             return Number::ZERO;
         }
         let found = self.emitter(self.find_emitter(0, id));
-        self.emitter_density(&found, Vector::recorded(position)) / self.sources()
+        self.emitter_density(&found, position) / self.sources()
     }
 
     fn sample_emitter(&mut self, position: Vector, u: [u32; 2], choice: u32) -> LightSample {
@@ -188,7 +188,7 @@ impl Kernel<'_> {
         let axis = toward.fence().map(|c| c / length);
         let direction = axes_around(axis, self.choices).to_world(cone_direction(u, k));
         // Narrowed to the fenced direction in the recorded state, if it is legal.
-        let recorded = Vector::recorded(self.recorded().vector(slot::SHADOW));
+        let recorded = self.recorded(slot::SHADOW).unwrap_or(direction);
         let direction = direction.zip(recorded, Number::narrowed);
         let middle = toward.dot(direction);
         let foot = toward - direction * middle;

@@ -5,5 +5,6 @@
 //! lobe, reflection or refraction, the texel, and whether the path ends.
 
 mod bsdf;
+mod forward;
 pub(super) mod kernel;
 mod light;

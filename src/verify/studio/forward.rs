@@ -1,136 +1,19 @@
-//! All light that a conforming device may find for a pixel of a studio, from the camera to the mean of its samples. The
-//! kernels are those of the check of recordings, but their results are intervals instead of recorded numbers.
+//! All light that a conforming device may find at a surface of a studio of opaque spheres.
 
-use glam::{DVec2, DVec3};
-
-use crate::camera::View;
-use crate::camera::sampling::{pair, pixel_seed, unit};
-use crate::image::NO_ID;
-use crate::image::color::LUMINANCE;
-use crate::light::emitters::Emitters;
-use crate::recording::lighting::{HostLighting, max_surfaces};
-use crate::recording::lit::{LitInputs, PathState, flag, slot};
-use crate::recording::{NO_HIT, RequestedCamera};
-use crate::render::RenderSettings;
-use crate::verify::Checker;
+use crate::recording::lit::slot;
 use crate::verify::choices::Choices;
-use crate::verify::hit::LegalHits;
 use crate::verify::lit::certificate::Address;
 use crate::verify::lit::check::LitCheck;
-use crate::verify::lit::film::location;
+use crate::verify::lit::forward::LegalSample;
 use crate::verify::lit::kernel::{Kernel, Output, RayHit, RayState};
 use crate::verify::lit::search::Obstacle;
-use crate::verify::number::{Number, Vector};
-use crate::verify::rounding::{FLUSH, Interval, PAD, U};
+use crate::verify::number::Number;
 use crate::verify::studio::light::Change;
 use crate::verify::studio::surface::HitKind;
-use crate::verify::uploaded::expected_view;
-
-/// The numbers that a device gets for a studio of opaque surfaces; `None` for other pictures.
-pub(crate) fn inputs(checker: &Checker<'_>, view: &View<'_>, settings: &RenderSettings) -> Option<LitInputs> {
-    let scene = checker.scene;
-    settings.studio_parameters()?;
-    if !scene.is_opaque() || scene.is_empty() {
-        return None;
-    }
-    let camera = RequestedCamera::of(view.camera);
-    let uploaded = expected_view(&camera, scene.origin(), checker.candidates.bounds());
-    let emitters = Emitters::default();
-    let host = HostLighting::new(settings, scene.origin(), scene.checked_appearance(), &emitters, &camera.vectors);
-    Some(LitInputs {
-        camera,
-        // All spheres are opaque.
-        occluders: [uploaded.scene_min, uploaded.scene_max],
-        uploaded,
-        film: view.film,
-        origin: [0; 2],
-        size: [view.film.width(), view.film.height()],
-        settings: settings.clone(),
-        max_surfaces: max_surfaces(settings, true),
-        lighting: host.lighting,
-        tables: host.tables.iter().map(|four| four.map(f32::to_bits)).collect(),
-        emitters: Vec::new(),
-        sky: None,
-    })
-}
 
 impl LitCheck<'_> {
-    /// The means of all samples of a pixel; `None` if hardly anything is known.
-    pub(crate) fn legal_pixel(&self, pixel: [u32; 2], hits: &mut LegalHits) -> Option<PixelLight> {
-        let samples = self.inputs.settings.sampling.samples.max(1);
-        let (mut color, mut albedo) = ([Mean::default(); 3], [Mean::default(); 3]);
-        let mut luminances = Vec::with_capacity(samples as usize);
-        for sample in 0..samples {
-            let LegalSample { light, first } = self.legal_sample(Address { pixel, sample, surface: 0 }, hits)?;
-            let light = light.radiance;
-            color.iter_mut().zip(light.intervals()).for_each(|(mean, more)| mean.add(more));
-            albedo.iter_mut().zip(first.intervals()).for_each(|(mean, more)| mean.add(more));
-            luminances.push(light.dot(Vector(LUMINANCE.map(Number::constant))).interval());
-        }
-        let count = f64::from(samples);
-        // The rounding errors of the sum of colours are added to it, so that those of the errors and of the mean remain.
-        let color = color.map(|mean| mean.of(count, PAD * (2.0 + count * count * U) * U));
-        let albedo = albedo.map(|mean| mean.of(count, PAD * (count + 2.0) * U));
-        Some(PixelLight { color, albedo, variance: variance(&luminances) })
-    }
-
-    /// The distance between rays that start at different places along the axis, because their origins are rounded. A
-    /// device may choose another start, up to the size of the box away.
-    pub(crate) fn moved(&self, origin: DVec3) -> f64 {
-        2.0 * U * (origin.length() + self.model.diagonal())
-    }
-
-    /// The light of a sample; `None` if hardly anything is known.
-    fn legal_sample(&self, address: Address, hits: &mut LegalHits) -> Option<LegalSample> {
-        let Address { pixel, sample, .. } = address;
-        let lighting = &self.inputs.lighting;
-        let seed = pixel_seed(pixel, lighting.seed);
-        let location = location(&self.inputs.film, &lighting.filter_table, pixel, pair(seed, sample, 0));
-        let ray = self.model.ray_through_lens(location, DVec2::from(pair(seed, sample, 1).map(unit)));
-        let background = if lighting.flags & flag::TRANSPARENT == 0 { lighting.background } else { [0.0; 3] };
-        let nothing = LegalSample {
-            light: Change { radiance: Vector::recorded(background), opacity: Number::ZERO },
-            first: Vector::ZERO,
-        };
-        let mut all = ray.may_be_unseen.then_some(nothing);
-        if !ray.may_be_seen {
-            return all;
-        }
-        let any = ray.any(&self.model);
-        let mut state = RayState::recorded(start());
-        let moved = self.moved(ray.line.origin);
-        let origin_error = PAD * (ray.origin_error + DVec3::splat(moved));
-        for (slot, middle, error) in [
-            (slot::ORIGIN, ray.line.origin, origin_error),
-            (slot::DIRECTION, ray.line.direction, PAD * ray.direction_error),
-        ] {
-            (0..3).for_each(|axis| state.set([slot, axis], Number::around(middle[axis], error[axis])));
-        }
-        state.set([slot::FIRST, 3], Number::around(ray.distance, PAD * ray.distance_error));
-        any.moved(moved).find(&self.checker.candidates, hits);
-        let Interval { low, high } = any.enter;
-        let distance = Number::between(low, high);
-        let found = hits.spheres.iter().flat_map(|hit| {
-            let sides = [hit.near, hit.far].into_iter().flatten().filter(|side| side.low <= hits.limit);
-            // A start at another place makes all distances as much longer or shorter.
-            let apart = high - low + moved;
-            sides.map(move |side| RayHit {
-                t: Number::between((side.low - apart).max(0.0), side.high + apart),
-                distance,
-                id: hit.id,
-                shape_index: 0,
-            })
-        });
-        let miss = RayHit { t: Number::known(NO_HIT.into()), distance: Number::ZERO, id: NO_ID, shape_index: 0 };
-        for hit in found.chain(hits.miss.then_some(miss)) {
-            let light = self.legal_surface(address, &state, hit)?;
-            all = Some(all.map_or(light, |all| all.union(light)));
-        }
-        all
-    }
-
     /// The light of a surface that is hit, or of the ground or the background.
-    fn legal_surface(&self, address: Address, state: &RayState, hit: RayHit) -> Option<LegalSample> {
+    pub(crate) fn legal_surface(&self, address: Address, state: &RayState, hit: RayHit) -> Option<LegalSample> {
         let (mut choices, mut all) = (Choices::default(), None::<LegalSample>);
         loop {
             let mut kernel = self.kernel(address, state, &mut choices);
@@ -142,8 +25,7 @@ impl LitCheck<'_> {
                     HitKind::Surface => own.plus(self.legal_lights(address, &after)?),
                     HitKind::Nothing | HitKind::Emitter => own,
                 };
-                let sample = LegalSample { light: lit, first: after.vector(slot::FIRST) };
-                all = Some(all.map_or(sample, |all| all.union(sample)));
+                LegalSample { light: lit, first: after.vector(slot::FIRST) }.join(&mut all);
             }
             if !choices.advance() {
                 break;
@@ -188,85 +70,4 @@ impl LitCheck<'_> {
         let gathered = gathered.reduce(|one, other| Some(one?.union(other?)))??;
         Some(if lighting.occlusion_samples == 0 { sum } else { sum.plus(gathered) })
     }
-}
-
-/// The means of a pixel's samples.
-#[derive(Clone, Debug)]
-pub(crate) struct PixelLight {
-    pub(crate) color: [Interval; 3],
-    /// The mean colour of the first surfaces.
-    pub(crate) albedo: [Interval; 3],
-    /// The variance of the mean luminance.
-    pub(crate) variance: Interval,
-}
-
-/// The light of a sample, and the colour of its first surface.
-#[derive(Clone, Copy)]
-struct LegalSample {
-    light: Change,
-    first: Vector,
-}
-
-impl LegalSample {
-    fn union(self, other: Self) -> Self {
-        Self { light: self.light.union(other.light), first: self.first.zip(other.first, Number::union) }
-    }
-}
-
-/// A sum of intervals.
-#[derive(Clone, Copy, Default)]
-struct Mean {
-    low: f64,
-    high: f64,
-    size: f64,
-}
-
-impl Mean {
-    fn add(&mut self, more: Interval) {
-        self.low += more.low;
-        self.high += more.high;
-        self.size += more.low.abs().max(more.high.abs());
-    }
-
-    /// The mean of so many terms, with this error relative to the sum of their magnitudes.
-    fn of(self, count: f64, relative: f64) -> Interval {
-        let error = relative * self.size + 4.0 * count * FLUSH;
-        Interval { low: (self.low - error) / count, high: (self.high + error) / count }
-    }
-}
-
-/// The variance of the mean of luminances. The device subtracts the square of the mean from the mean of squares, of which
-/// each has some roundings.
-fn variance(luminances: &[Interval]) -> Interval {
-    let count = luminances.len() as f64;
-    if count < 2.0 {
-        return Interval { low: 0.0, high: 0.0 };
-    }
-    let mut mean = Mean::default();
-    luminances.iter().for_each(|light| mean.add(*light));
-    let middle = 0.5 * (mean.low + mean.high) / count;
-    let (mut least, mut most, mut squares) = (0.0, 0.0, 0.0);
-    for light in luminances {
-        let (low, high) = (light.low - middle, light.high - middle);
-        least += low.max(-high).max(0.0).powi(2);
-        most += low.powi(2).max(high.powi(2));
-        squares += light.low.powi(2).max(light.high.powi(2));
-    }
-    let aside = (0.5 * (mean.high - mean.low) / count).powi(2);
-    let error = PAD * 24.0 * U * squares / count + 4.0 * FLUSH;
-    let spread = Interval { low: (least / count - aside - error).max(0.0), high: most / count + error };
-    let relative = PAD * 2.0 * U;
-    Interval {
-        low: spread.low / (count - 1.0) * (1.0 - relative),
-        high: spread.high / (count - 1.0) * (1.0 + relative),
-    }
-}
-
-/// The state of a ray at the camera, without its origin and its direction.
-fn start() -> PathState {
-    let mut state = PathState::EMPTY;
-    state.slots[slot::ORIGIN][3] = flag::ALIVE | flag::FULL;
-    state.slots[slot::DEPARTURE][0] = NO_ID;
-    state.slots[slot::THROUGHPUT] = [1.0_f32.to_bits(); 4];
-    state
 }

@@ -5,8 +5,7 @@
 //! lights are hidden and the light of the others, and the same for directions of ambient light. Rays towards lights are
 //! not stored. The surface determines each of them up to the error of its direction (`studio/search.rs`).
 
-pub(super) mod forward;
-pub(super) mod legal_picture;
+mod forward;
 pub(super) mod light;
 pub(super) mod search;
 pub(super) mod surface;

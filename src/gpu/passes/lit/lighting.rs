@@ -4,14 +4,13 @@
 use std::sync::Arc;
 
 use crate::camera::Camera;
-use crate::gpu::passes::emitter_table;
 use crate::gpu::passes::lit::kernels::{Materials, Mode, OnePass, SkyKind, Sources};
 use crate::gpu::passes::lit::records::{BITS, LightingParameters};
 use crate::gpu::scene::scene_summary::SceneSummary;
 use crate::light::codes::lighting as flags;
 use crate::light::environment::Environment;
 use crate::light::{LightKind, SkyLight};
-use crate::recording::lighting::{HostLighting, SourceList, max_surfaces};
+use crate::recording::lighting::{HostLighting, SourceList, emitter_records, max_surfaces};
 use crate::recording::lit::UploadedLighting;
 use crate::render::{Integrator, RenderSettings};
 use crate::scene::material::{Material, SurfaceProperties};
@@ -52,7 +51,7 @@ impl LightingData {
             parameters: LightingParameters::of(&lighting),
             lighting,
             tables,
-            emitters: if sources.emitters { emitter_table::records(scene).collect() } else { Vec::new() },
+            emitters: if sources.emitters { emitter_records(&scene.emitters, &scene.emissive) } else { Vec::new() },
             max_surfaces: max_surfaces(settings, scene.appearance.is_opaque()),
             is_opaque: scene.appearance.is_opaque(),
             is_sharp: is_sharp(settings, scene, &lights),

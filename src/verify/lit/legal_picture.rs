@@ -1,4 +1,4 @@
-//! The finished light that a conforming device may have in a picture of a studio: after noise is removed and lines are
+//! The finished light that a conforming device may have in a picture: after noise is removed and lines are
 //! drawn, which read the light and the hits of neighbours.
 
 use glam::DVec3;
@@ -11,9 +11,9 @@ use crate::verify::certificate::CHUNK;
 use crate::verify::denoised::{LegalGuide, Light, filtered, product};
 use crate::verify::hit::LegalHits;
 use crate::verify::lit::check::LitCheck;
+use crate::verify::lit::forward::PixelLight;
 use crate::verify::rounding::{DIVIDE, FLUSH, Interval, PAD, U, gamma};
 use crate::verify::sphere::LegalNormals;
-use crate::verify::studio::forward::PixelLight;
 
 /// The smallest albedo by which light is divided before noise is removed.
 const LEAST_ALBEDO: f64 = 0.01_f32 as f64;
