@@ -10,7 +10,7 @@ use pinhole::internals::ShaderEdit;
 use crate::support::effort::share;
 
 /// The suites that have faults.
-const SUITES: [&str; 11] = [
+const SUITES: [&str; 12] = [
     "primary",
     "render",
     "paths",
@@ -19,6 +19,7 @@ const SUITES: [&str; 11] = [
     "denoised",
     "small",
     "one_pass",
+    "samples",
     "composite",
     "limit",
     "live",

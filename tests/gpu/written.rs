@@ -3,7 +3,7 @@
 use libtest_mimic::{Failed, Trial};
 use pinhole::gpu::{Headless, Wait};
 use pinhole::image::encoding::Bits;
-use pinhole::render::Outline;
+use pinhole::render::{Outline, RenderSettings};
 use pinhole::verify::finished::{FinishedCertificate, LEAST_EXACT, PixelVerdict};
 use pinhole::verify::written::{Samples, WrittenCertificate, WrittenPicture};
 use pinhole::verify::{Checker, Interval, Outcome};
@@ -50,6 +50,7 @@ pub(crate) fn trials() -> Vec<Trial> {
     let (render, primary) = (planted("render"), planted("primary"));
     trials.extend(planted::trials("written::faults::render_", render.filter(is_seen), found));
     trials.extend(planted::trials("written::faults::", primary.filter(is_of_color), found));
+    trials.extend(planted::trials("written::faults::", planted("samples"), is_found_in_light));
     trials
 }
 
@@ -87,22 +88,53 @@ fn is_found(device: &Headless, view: &View) -> Result<(), Failed> {
     }
 }
 
-/// Judges finished pictures of light in samples of 8 and of 16 bits, and in linear light. If `is_finished`, noise is
-/// removed and lines are drawn.
-pub(crate) fn finished(device: &Headless, view: &View, is_finished: bool) -> Result<[FinishedCertificate; 3], Failed> {
-    let View { scene, settings, .. } = view;
-    let mut settings = settings.clone();
-    if let (true, Integrator::Studio(studio)) = (is_finished, &mut settings.integrator) {
-        settings.sampling.denoise = true;
-        studio.outline = Some(Outline::default());
+/// A picture of light by a device, and by the reference.
+struct Pictures<'a> {
+    view: &'a View,
+    settings: RenderSettings,
+    images: [Image; 2],
+}
+
+impl<'a> Pictures<'a> {
+    /// If `is_finished`, noise is removed and lines are drawn.
+    fn new(device: &Headless, view: &'a View, is_finished: bool) -> Result<Self, Failed> {
+        let View { scene, settings, .. } = view;
+        let mut settings = settings.clone();
+        settings.sampling.denoise |= is_finished;
+        if let (true, Integrator::Studio(studio)) = (is_finished, &mut settings.integrator) {
+            studio.outline = Some(Outline::default());
+        }
+        let found = device.render(scene, &view.seen(), &settings, LayerSet::COLOR).wait()?;
+        let exact = cpu::render(scene, &view.seen(), &settings, LayerSet::COLOR)?;
+        Ok(Self { view, settings, images: [found, exact] })
     }
-    let found = device.render(scene, &view.seen(), &settings, LayerSet::COLOR).wait()?;
-    let exact = cpu::render(scene, &view.seen(), &settings, LayerSet::COLOR)?;
-    let checker = Checker::new(scene)?;
-    let images = [&found, &exact];
-    let all: Vec<usize> = (0..found.color().len()).collect();
-    for (index, legal) in checker.legal_light(&view.seen(), &settings, &all).into_iter().enumerate() {
-        for (image, name) in images.into_iter().zip(["the device", "the reference"]) {
+
+    /// Judges samples with these bits, or linear light.
+    fn judged(&self, bits: Option<Bits>) -> Result<FinishedCertificate, Failed> {
+        let Self { view, settings, images } = self;
+        let mut encoding = Encoding::default();
+        encoding.bits = bits.unwrap_or(Bits::Eight);
+        let bytes = [png::samples(&images[0], &encoding)?, png::samples(&images[1], &encoding)?];
+        let light =
+            images.each_ref().map(|image| image.color().iter().map(|[r, g, b]| [*r, *g, *b, 1.0]).collect::<Vec<_>>());
+        let samples = |which: usize| match bits {
+            Some(_) => Samples::Encoded(&bytes[which]),
+            None => Samples::Linear(&light[which]),
+        };
+        let size = [images[0].width(), images[0].height()];
+        let pictures = [0, 1].map(|which| WrittenPicture { size, samples: samples(which), encoding: &encoding });
+        Ok(Checker::new(&view.scene)?.certify_finished(&view.seen(), settings, pictures.each_ref(), false)?)
+    }
+}
+
+/// Judges finished pictures of light in samples of 8 and of 16 bits, and in linear light, and asserts that all pixels of
+/// the device and of the reference are legal. If `is_finished`, noise is removed and lines are drawn.
+pub(crate) fn finished(device: &Headless, view: &View, is_finished: bool) -> Result<[FinishedCertificate; 3], Failed> {
+    let pictures = Pictures::new(device, view, is_finished)?;
+    let all: Vec<usize> = (0..pictures.images[0].color().len()).collect();
+    let legal = Checker::new(&view.scene)?.legal_light(&view.seen(), &pictures.settings, &all);
+    for (index, legal) in legal.into_iter().enumerate() {
+        for (image, name) in pictures.images.iter().zip(["the device", "the reference"]) {
             let color = image.color()[index];
             let is_legal = |legal: &[Interval; 3]| legal.iter().zip(color).all(|(legal, c)| legal.contains(c.into()));
             if legal.is_some_and(|legal| !is_legal(&legal)) {
@@ -110,20 +142,19 @@ pub(crate) fn finished(device: &Headless, view: &View, is_finished: bool) -> Res
             }
         }
     }
-    let light = images.map(|image| image.color().iter().map(|[r, g, b]| [*r, *g, *b, 1.0]).collect::<Vec<_>>());
-    let judged = |bits: Option<Bits>| -> Result<FinishedCertificate, Failed> {
-        let mut encoding = Encoding::default();
-        encoding.bits = bits.unwrap_or(Bits::Eight);
-        let bytes = [png::samples(images[0], &encoding)?, png::samples(images[1], &encoding)?];
-        let samples = |which: usize| match bits {
-            Some(_) => Samples::Encoded(&bytes[which]),
-            None => Samples::Linear(&light[which]),
-        };
-        let size = [found.width(), found.height()];
-        let pictures = [0, 1].map(|which| WrittenPicture { size, samples: samples(which), encoding: &encoding });
-        Ok(checker.certify_finished(&view.seen(), &settings, pictures.each_ref(), false)?)
-    };
-    Ok([judged(Some(Bits::Eight))?, judged(Some(Bits::Sixteen))?, judged(None)?])
+    Ok([pictures.judged(Some(Bits::Eight))?, pictures.judged(Some(Bits::Sixteen))?, pictures.judged(None)?])
+}
+
+/// Asserts that a fault of kernels that take whole samples is found in a picture of light.
+fn is_found_in_light(fault: &Fault) -> Result<(), Failed> {
+    let [scene] = fault.setup();
+    let view = lit_scenes::named(scene);
+    let judged = Pictures::new(&fault.device()?, &view, false)?.judged(Some(Bits::Eight))?;
+    println!("{:?}", PixelVerdict::ALL.iter().map(|verdict| judged.count(*verdict)).collect::<Vec<_>>());
+    match judged.outcome_of_device() {
+        Outcome::Violated => Ok(()),
+        outcome => Err(format!("the fault was not found: {outcome}").into()),
+    }
 }
 
 /// Asserts that no pixel of finished pictures is violated.
