@@ -4,11 +4,12 @@
 use glam::DVec3;
 
 use crate::image::NO_ID;
+use crate::image::denoise::REACH;
 use crate::image::outline::{self, Outline};
 use crate::parallel::{map_parts, ranges};
 use crate::recording::pixel_at;
 use crate::verify::certificate::CHUNK;
-use crate::verify::denoised::{LegalGuide, Light, filtered, product};
+use crate::verify::denoised::{LegalGuide, Light, filtered, near, product};
 use crate::verify::hit::LegalHits;
 use crate::verify::lit::check::LitCheck;
 use crate::verify::lit::forward::PixelLight;
@@ -39,10 +40,19 @@ impl LitCheck<'_> {
         let settings = &self.inputs.settings;
         let lines = settings.studio_parameters().and_then(|studio| studio.outline);
         let is_denoised = settings.sampling.denoise;
-        let spots = if is_denoised || lines.is_some() { self.spots(count) } else { Vec::new() };
+        // Light and hits are needed as far as they reach the pixels.
+        let of_lines = lines.map_or(0, |lines| outline::halo(lines.width) as u32 + 2);
+        let reach = if is_denoised { REACH.max(of_lines) } else { of_lines };
+        let needed = near(size, indices.iter().copied(), reach);
+        let needed = |pixel: [u32; 2]| needed[pixel[1] as usize * size[0] as usize + pixel[0] as usize];
+        let spots = match is_denoised || lines.is_some() {
+            true => self.all_pixels(count, |pixel, hits| needed(pixel).then(|| self.spot(pixel, hits)).flatten()),
+            false => Vec::new(),
+        };
         let mut light: Vec<Option<[Interval; 3]>> = if is_denoised {
-            let lights = self.all_pixels(count, |pixel, hits| self.legal_pixel(pixel, hits));
-            let quiet = without_noise(size, &lights, &spots);
+            let light =
+                |pixel: [u32; 2], hits: &mut LegalHits| needed(pixel).then(|| self.legal_pixel(pixel, hits)).flatten();
+            let quiet = without_noise(size, &self.all_pixels(count, light), &spots, indices);
             indices.iter().map(|index| Some(quiet[*index])).collect()
         } else {
             let parts = map_parts(ranges(indices.len(), 16), |range| {
@@ -67,10 +77,6 @@ impl LitCheck<'_> {
             range.map(|index| find(pixel_at(index, self.inputs.size[0]), &mut hits)).collect::<Vec<T>>()
         });
         parts.concat()
-    }
-
-    fn spots(&self, count: usize) -> Vec<Option<Spot>> {
-        self.all_pixels(count, |pixel, hits| self.spot(pixel, hits))
     }
 
     fn spot(&self, pixel: [u32; 2], hits: &mut LegalHits) -> Option<Spot> {
@@ -115,8 +121,13 @@ fn divisors(PixelLight { color, albedo, .. }: &PixelLight) -> [Interval; 3] {
     })
 }
 
-/// The light of all pixels after noise was removed.
-fn without_noise(size: [u32; 2], lights: &[Option<PixelLight>], spots: &[Option<Spot>]) -> Vec<[Interval; 3]> {
+/// The light of some pixels, by their indices, after noise was removed. Other elements mean nothing.
+fn without_noise(
+    size: [u32; 2],
+    lights: &[Option<PixelLight>],
+    spots: &[Option<Spot>],
+    indices: &[usize],
+) -> Vec<[Interval; 3]> {
     let luminance = |color: [f64; 3]| (0..3).map(|i| crate::image::color::LUMINANCE[i] * color[i]).sum::<f64>();
     let (mut guides, mut divided) = (Vec::with_capacity(spots.len()), Vec::with_capacity(spots.len()));
     for (light, spot) in lights.iter().zip(spots) {
@@ -151,7 +162,7 @@ fn without_noise(size: [u32; 2], lights: &[Option<PixelLight>], spots: &[Option<
             albedo,
         });
     }
-    let quiet = filtered(&guides, size, divided);
+    let quiet = filtered(&guides, size, divided, indices.iter().copied());
     let color = |(light, guide): (&Light, &LegalGuide)| [0, 1, 2].map(|i| product(light[i], guide.albedo[i]));
     quiet.iter().zip(&guides).map(color).collect()
 }
