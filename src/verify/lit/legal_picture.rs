@@ -33,8 +33,9 @@ struct Spot {
 }
 
 impl LitCheck<'_> {
-    /// The finished light of some pixels, by their indices; `None` for a pixel about which hardly anything is known.
-    pub(crate) fn finished_light(&self, indices: &[usize]) -> Vec<Option<[Interval; 3]>> {
+    /// The finished light of some pixels, by their indices, and their alpha; `None` for a pixel about which hardly
+    /// anything is known.
+    pub(crate) fn finished_light(&self, indices: &[usize]) -> Vec<Option<[Interval; 4]>> {
         let size = self.inputs.size;
         let count = size[0] as usize * size[1] as usize;
         let settings = &self.inputs.settings;
@@ -49,16 +50,22 @@ impl LitCheck<'_> {
             true => self.all_pixels(count, |pixel, hits| needed(pixel).then(|| self.spot(pixel, hits)).flatten()),
             false => Vec::new(),
         };
-        let mut light: Vec<Option<[Interval; 3]>> = if is_denoised {
+        let mut light: Vec<Option<[Interval; 4]>> = if is_denoised {
             let light =
                 |pixel: [u32; 2], hits: &mut LegalHits| needed(pixel).then(|| self.legal_pixel(pixel, hits)).flatten();
-            let quiet = without_noise(size, &self.all_pixels(count, light), &spots, indices);
-            indices.iter().map(|index| Some(quiet[*index])).collect()
+            let lights = self.all_pixels(count, light);
+            let quiet = without_noise(size, &lights, &spots, indices);
+            let any_alpha = Interval { low: 0.0, high: 1.0 };
+            let alpha = |index: usize| lights[index].as_ref().map_or(any_alpha, |light| light.alpha);
+            indices.iter().map(|index| Some(with_alpha(quiet[*index], alpha(*index)))).collect()
         } else {
             let parts = map_parts(ranges(indices.len(), 16), |range| {
                 let mut hits = LegalHits::default();
                 let light = |at: usize| self.legal_pixel(pixel_at(indices[at], size[0]), &mut hits);
-                range.map(light).map(|light| light.map(|light| light.color)).collect::<Vec<_>>()
+                range
+                    .map(light)
+                    .map(|light| light.map(|light| with_alpha(light.color, light.alpha)))
+                    .collect::<Vec<_>>()
             });
             parts.concat()
         };
@@ -133,6 +140,7 @@ fn without_noise(
     for (light, spot) in lights.iter().zip(spots) {
         let unknown = PixelLight {
             color: [ANY_LIGHT; 3],
+            alpha: Interval { low: 0.0, high: 1.0 },
             albedo: [Interval { low: 0.0, high: 1.0 + 4.0 * U }; 3],
             variance: Interval { low: 0.0, ..ANY_LIGHT },
         };
@@ -240,10 +248,15 @@ fn covered(size: [u32; 2], spots: &[Option<Spot>], outline: &Outline) -> Vec<[f6
     covered
 }
 
-/// Light over which a line is drawn.
-fn mixed(light: [Interval; 3], share: [f64; 2], outline: &Outline) -> [Interval; 3] {
-    let line = outline.color.to_array().map(f64::from);
-    [0, 1, 2].map(|channel| {
+fn with_alpha([r, g, b]: [Interval; 3], alpha: Interval) -> [Interval; 4] {
+    [r, g, b, alpha]
+}
+
+/// Light over which a line is drawn, and its alpha.
+fn mixed(light: [Interval; 4], share: [f64; 2], outline: &Outline) -> [Interval; 4] {
+    let [r, g, b] = outline.color.to_array().map(f64::from);
+    let line = [r, g, b, 1.0];
+    [0, 1, 2, 3].map(|channel| {
         let over = |light: f64, share: f64| light + share * (line[channel] - light);
         let Interval { low, high } = light[channel];
         let least = over(low, share[0]).min(over(low, share[1]));
