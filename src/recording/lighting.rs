@@ -4,7 +4,8 @@ use glam::DVec3;
 
 use crate::camera::CameraVectors;
 use crate::geometry::math::unit;
-use crate::image::color::LinearRgb;
+use crate::image::Averages;
+use crate::image::color::{LinearRgb, luminance};
 use crate::light::codes::{self, lighting as flags};
 use crate::light::emitters::{EmissiveSphere, Emitters};
 use crate::light::energy::EnergyTables;
@@ -238,4 +239,23 @@ pub(crate) fn uploaded_sky(settings: &RenderSettings) -> Option<UploadedSky> {
         }),
         SkyLight::Constant(_) | SkyLight::Gradient { .. } => None,
     }
+}
+
+/// The means of a pixel, its luminance, and the variance of its mean luminance.
+pub(crate) fn means(pixel: &[[f32; 4]; 3], samples: u32) -> (Averages, f64, f64) {
+    let [[r, g, b, alpha], rest, [red, green, blue, square]] = pixel.map(|v| v.map(f64::from));
+    let count = f64::from(samples.max(1));
+    let sum = [r + rest[0], g + rest[1], b + rest[2]];
+    let light = luminance(sum) / count;
+    let spread = ((square + rest[3]) / count - light * light).max(0.0);
+    let variance = if samples > 1 { spread / (count - 1.0) } else { 0.0 };
+    let narrow = |sum: f64| (sum / count) as f32;
+    let averages = Averages {
+        color: sum.map(narrow),
+        alpha: narrow(alpha).clamp(0.0, 1.0),
+        albedo: [red, green, blue].map(narrow),
+        samples,
+        variance: variance as f32,
+    };
+    (averages, light, variance)
 }

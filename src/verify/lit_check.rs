@@ -49,7 +49,13 @@ impl Checker<'_> {
 
 impl LitCheck<'_> {
     /// Judges a sample of the pixel with this index.
-    fn judge_sample(&self, recorded: &RecordedSample, index: usize, part: &mut LitCertificate, legal: &mut LegalHits) {
+    pub(crate) fn judge_sample(
+        &self,
+        recorded: &RecordedSample,
+        index: usize,
+        part: &mut LitCertificate,
+        legal: &mut LegalHits,
+    ) {
         let (stage, ray, ended) = match self.is_studio {
             true => (LitStage::Surface, "ray", "a ray that has ended"),
             false => (LitStage::Scatter, "path", "a path that has ended"),

@@ -57,6 +57,7 @@ pub mod run_file;
 mod sphere;
 mod studio;
 mod uploaded;
+mod witness;
 pub mod written;
 
 pub use crate::recording::lit::{LitInputs, LitRecording, RecordedSample};
@@ -72,3 +73,4 @@ pub use lit::certificate::{LitCertificate, LitOpen, LitShare, LitStage, LitViola
 pub use rounding::Interval;
 #[cfg(feature = "gpu")]
 pub(crate) use rounding::{DIVIDE_UNITS, SQRT_ULP, gamma};
+pub use witness::Witness;

@@ -6,9 +6,8 @@ use crate::flags::settings::Given;
 use crate::input::Input;
 use crate::output::picture::{Outputs, PictureFormat};
 use crate::render::device::OpenDevice;
-use crate::render::render_joined;
-use crate::render::stop_rule::StopRule;
-use crate::render::views::{Shot, views_of};
+use crate::render::views::views_of;
+use crate::render::{finish_joined, render_part};
 use crate::terminal::failure::Failure;
 use crate::terminal::progress;
 use pinhole::image::Image;
@@ -70,16 +69,42 @@ impl FilePicture {
     }
 }
 
-/// Judges every pixel of a picture. The reference makes the picture again, with the same random numbers.
+/// Replaces light of the reference by light that a device found and that is known to be legal; `None` if there is none.
+pub(crate) type FindWitness<'a> = dyn Fn(&mut Input, &Image) -> Result<Option<Image>, Failure> + 'a;
+
+/// Judges every pixel of a picture. The reference makes the picture again, with the same random numbers. If the outcome
+/// is undecided, as `outcome` says, a witness may replace some of its light.
 pub(crate) fn judge(
+    input: &mut Input,
+    encoding: &Encoding,
+    outputs: &Outputs,
+    written: &FilePicture,
+    outcome: fn(&FinishedCertificate) -> Outcome,
+    witness: &FindWitness<'_>,
+) -> Result<FinishedCertificate, Failure> {
+    let layers = Outputs::unwritten(outputs.format).layers(encoding);
+    let images = render_part(input, input.film, layers, &OpenDevice::Cpu)?;
+    let judged = judge_by(input, encoding, outputs, written, images.clone())?;
+    if let (Outcome::Undecided, false, [image]) =
+        (outcome(&judged), input.settings.integrator.is_primary(), &images[..])
+        && let Some(image) = witness(input, image)?
+    {
+        return judge_by(input, encoding, outputs, written, vec![image]);
+    }
+    Ok(judged)
+}
+
+/// Judges a picture by the unfinished pictures of the reference for each eye.
+fn judge_by(
     input: &Input,
     encoding: &Encoding,
     outputs: &Outputs,
     written: &FilePicture,
+    images: Vec<Image>,
 ) -> Result<FinishedCertificate, Failure> {
-    let (layers, stop_rule) = (Outputs::unwritten(outputs.format).layers(encoding), StopRule::default());
+    let layers = Outputs::unwritten(outputs.format).layers(encoding);
     let views = &views_of(input, input.film);
-    let image = render_joined(&Shot { input, views, layers, stop_rule, opened: &OpenDevice::Cpu })?;
+    let image = finish_joined(images, &input.settings, layers, &OpenDevice::Cpu)?;
     let annotations = &outputs.annotations;
     let plain = Outputs::unwritten(outputs.format);
     let exact = FilePicture::of(&image, encoding, &plain)?;

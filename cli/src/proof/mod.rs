@@ -8,3 +8,5 @@ pub(crate) mod render_certified;
 #[cfg(feature = "gpu")]
 pub(crate) mod self_test;
 pub(crate) mod verify;
+#[cfg(feature = "gpu")]
+pub(crate) mod witness;

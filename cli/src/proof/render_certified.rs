@@ -12,8 +12,9 @@ use crate::render::stop_rule::StopRule;
 use crate::render::views::{Shot, views_of};
 use crate::terminal::failure::Failure;
 use crate::terminal::progress;
-use pinhole::image::Layer;
 use pinhole::image::encoding::Encoding;
+use pinhole::image::{Image, Layer};
+use pinhole::verify::finished::FinishedCertificate;
 
 /// Renders, judges and writes a picture. A picture that is not legal is an error and is not written. If some pixels are
 /// open, the certificate says so, and the result is the failure of a check that could not decide.
@@ -38,7 +39,10 @@ pub(crate) fn run(
     }
     input.settings.sampling.samples = count;
     let written = FilePicture::of(&image, encoding, &outputs)?;
-    let judged = certified::judge(input, encoding, &outputs, &written)?;
+    let judged =
+        certified::judge(input, encoding, &outputs, &written, FinishedCertificate::outcome, &|input, exact| {
+            witness(input, exact, opened)
+        })?;
     let verdict = certified::verdict(&judged);
     if let Err(failure @ Failure::CheckFailed(_)) = verdict {
         return Err(failure);
@@ -49,4 +53,16 @@ pub(crate) fn run(
     let outputs = Outputs { certificate: Some(certificate.to_text()), ..outputs };
     outputs.write(&image, encoding, adapter, None)?;
     Ok(verdict)
+}
+
+/// Light that the device finds, where it is known to be legal.
+#[cfg_attr(not(feature = "gpu"), expect(clippy::unnecessary_wraps, reason = "devices fail"))]
+pub(crate) fn witness(input: &mut Input, exact: &Image, opened: &OpenDevice) -> Result<Option<Image>, Failure> {
+    match opened {
+        #[cfg(feature = "gpu")]
+        OpenDevice::Device { headless, choice, .. } => {
+            crate::proof::witness::of(headless, input, exact, *choice, opened).map(Some)
+        }
+        _ => Ok(None),
+    }
 }

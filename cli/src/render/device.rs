@@ -42,6 +42,12 @@ pub(crate) struct WantedAdapter {
 }
 
 impl Device {
+    /// The best adapter, or the CPU if there is none.
+    pub(crate) fn any() -> Self {
+        let wanted = WantedAdapter { name: None, limits: None, ray_query: false };
+        Self::Adapter { wanted, choice: AccelChoice::default(), or_cpu: true }
+    }
+
     pub(crate) fn new(args: &DeviceArgs, accel: Option<AccelChoice>) -> Result<Self, Failure> {
         let AdapterArgs { adapter, limits } = &args.adapter;
         let given = [("--adapter", adapter.is_some()), ("--accel", accel.is_some()), ("--limits", limits.is_some())];

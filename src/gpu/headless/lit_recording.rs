@@ -145,6 +145,13 @@ pub enum LitPart {
     /// A rectangle with half the sides, at a place that follows from this seed; nothing if [`LitPart::Middle`] is the
     /// whole picture. Every pixel has about the same chance, and pixels at edges a larger one.
     Random(u32),
+    /// A rectangle: its first column and row, and its size of at most 256 pixels along each axis.
+    Rectangle {
+        /// First column and row.
+        origin: [u32; 2],
+        /// Width and height.
+        size: [u32; 2],
+    },
 }
 
 impl LitPart {
@@ -156,6 +163,13 @@ impl LitPart {
         let most = if is_larger { longest_side - longest_side / 8 } else { longest_side };
         let middle = film.map(|side| side.min(most));
         let (size, origin) = match self {
+            Self::Rectangle { origin, size } => {
+                let size = [0, 1].map(|axis| size[axis].min(most).min(film[axis].saturating_sub(origin[axis])));
+                if size.contains(&0) {
+                    return None;
+                }
+                (size, origin)
+            }
             Self::Middle => (middle, [0, 1].map(|axis| (film[axis] - middle[axis]) / 2)),
             Self::Random(_) if middle == film => return None,
             Self::Random(seed) => {

@@ -11,6 +11,7 @@ use crate::input::{Input, Source};
 use crate::output::files;
 use crate::output::picture::{Outputs, PictureFormat};
 use crate::proof::certified::{self, FilePicture};
+use crate::proof::render_certified::witness;
 use crate::proof::self_test;
 use crate::proof::verify::args::VerifyArgs;
 use crate::proof::verify::output::{KeptLight, VerifyJob, VerifyOutputs};
@@ -228,7 +229,10 @@ fn judged_picture(
     let opened = OpenDevice::Device { headless: Box::new(headless), choice, warning: None };
     let image = render::render(&input, finished.layers_for(layers), &opened)?;
     let written = FilePicture::of(&image, &input.encoding, &outputs)?;
-    let certificate = certified::judge(&input, &input.encoding, &outputs, &written)?;
+    let encoding = input.encoding;
+    let outcome = FinishedCertificate::outcome_of_device;
+    let find = |input: &mut Input, exact: &Image| witness(input, exact, &opened);
+    let certificate = certified::judge(&mut input, &encoding, &outputs, &written, outcome, &find)?;
     progress::stage("finishing");
     if finished.sampling.denoise {
         let mut without_lines = input.settings.clone();

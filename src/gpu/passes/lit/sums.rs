@@ -2,12 +2,9 @@
 
 use crate::gpu::passes::lit::records::FILM_SLOTS;
 use crate::gpu::passes::tiles::Tile;
-use crate::image::color::luminance;
-use crate::image::{Averages, Image};
+use crate::image::Image;
+use crate::recording::lighting::means;
 use crate::render::Totals;
-
-/// The sums of a pixel: the three vectors of `shaders/path/film_sums.wgsl`.
-type Sums = [[f32; 4]; FILM_SLOTS as usize];
 
 /// Writes the means of a tile to the layers of an image.
 pub(crate) fn write(image: &mut Image, tile: Tile, sums: &[[f32; 4]], samples: u32) -> Totals {
@@ -24,23 +21,4 @@ pub(crate) fn write(image: &mut Image, tile: Tile, sums: &[[f32; 4]], samples: u
         }
     }
     totals
-}
-
-/// The means of a pixel, its luminance, and the variance of its mean luminance.
-fn means(pixel: &Sums, samples: u32) -> (Averages, f64, f64) {
-    let [[r, g, b, alpha], rest, [red, green, blue, square]] = pixel.map(|v| v.map(f64::from));
-    let count = f64::from(samples.max(1));
-    let sum = [r + rest[0], g + rest[1], b + rest[2]];
-    let light = luminance(sum) / count;
-    let spread = ((square + rest[3]) / count - light * light).max(0.0);
-    let variance = if samples > 1 { spread / (count - 1.0) } else { 0.0 };
-    let narrow = |sum: f64| (sum / count) as f32;
-    let averages = Averages {
-        color: sum.map(narrow),
-        alpha: narrow(alpha).clamp(0.0, 1.0),
-        albedo: [red, green, blue].map(narrow),
-        samples,
-        variance: variance as f32,
-    };
-    (averages, light, variance)
 }
