@@ -100,7 +100,7 @@ impl Film {
         Self { width, height, origin: [0; 2], ..*self }
     }
 
-    /// Whether this is a whole film and not a part of a larger one.
+    /// Returns true if this is a whole film and not a part of a larger one.
     #[must_use]
     pub fn is_whole(&self) -> bool {
         self.whole == [self.width, self.height]
@@ -117,7 +117,7 @@ impl Film {
         [self.origin[0] + column, self.origin[1] + row]
     }
 
-    /// The same film with another direction of y.
+    /// The film with another direction of y.
     #[must_use]
     pub fn with_y_axis(self, y_axis: YAxis) -> Self {
         Self { y_axis, ..self }

@@ -144,7 +144,7 @@ impl Scene {
         Self { origin, spheres, appearance, bounds, added: 0, whole: None }
     }
 
-    /// The same spheres, all with the same surface properties.
+    /// The spheres, all with these surface properties.
     #[must_use]
     pub fn with_surface(mut self, surface: SurfaceProperties) -> Self {
         let appearance = Arc::unwrap_or_clone(self.appearance).into_inner().with_surface(surface);
@@ -152,7 +152,7 @@ impl Scene {
         self
     }
 
-    /// The same spheres. The last `count` of them were added to those of the data, such as the edges of a cell. They do
+    /// The scene whose last `count` spheres were added to those of the data, such as the edges of a cell. They do
     /// not affect choices based on the data, such as the mean radius and the flat axis.
     #[must_use]
     pub fn with_added(mut self, count: usize) -> Self {
@@ -279,7 +279,7 @@ impl Scene {
         self.spheres.len()
     }
 
-    /// Whether the scene has no spheres.
+    /// Returns true if the scene has no spheres.
     #[must_use]
     pub fn is_empty(&self) -> bool {
         self.spheres.is_empty()

@@ -245,7 +245,7 @@ impl LegalHits {
         self.spheres.iter().find(|hit| hit.id == id)
     }
 
-    /// Whether a hit of this sphere at this distance is legal.
+    /// Returns true if a hit of this sphere at this distance is legal.
     #[must_use]
     pub fn allows(&self, id: u32, t: f64) -> bool {
         t <= self.limit && self.of(id).is_some_and(|hit| hit.crossing_at(t).is_some())

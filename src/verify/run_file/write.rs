@@ -50,7 +50,7 @@ pub fn write(scene: &Scene, recording: &Recording, provenance: &Provenance, out:
 /// its rectangle. Each surface adds 164 bytes, or in studios 160 and 24 for each 32 lights or directions.
 ///
 /// # Errors
-/// The same as for [`write()`]; also if the samples have another camera or film than the recording,
+/// As for [`write()`]; also if the samples have another camera or film than the recording,
 /// or the noisy picture lacks a layer.
 pub fn write_with(
     scene: &Scene,
