@@ -72,8 +72,8 @@ impl Film {
 
     /// A rectangle of this film, of `size` (width and height) pixels, whose first pixel is at `origin` (column and row).
     ///
-    /// A picture on the part has the same pixels as a picture on the whole film, to the bit. So several devices or
-    /// machines can render one picture. [`Image::put`](crate::image::Image::put) joins the parts. Steps that read
+    /// A picture on the part has the same pixels as a picture on the whole film, to the bit, on one kind of device. So
+    /// several machines can render one picture. [`Image::put`](crate::image::Image::put) joins the parts. Steps that read
     /// neighbours of pixels need the whole picture, so render parts with
     /// [`RenderSettings::unfinished`](crate::render::RenderSettings::unfinished).
     ///

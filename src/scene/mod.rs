@@ -113,8 +113,8 @@ impl Scene {
     }
 
     /// Some spheres of a larger scene, in input order and in its frame. If pictures of parts by primary rays are merged
-    /// by [`NearestPicture`](crate::render::NearestPicture), the result is that of the whole, to the bit. Integrators
-    /// with light need all spheres.
+    /// by [`NearestPicture`](crate::render::NearestPicture), the result is that of the whole on the same device, to
+    /// the bit. Integrators with light need all spheres.
     ///
     /// # Errors
     /// Returns the same errors as [`Scene::from_parts`], and an error if a sphere is outside the whole scene.
