@@ -15,7 +15,7 @@ use super::certificate::channel_name;
 use super::rounding::{DIVIDE, FLUSH, Interval, PAD, SQRT, U, gamma};
 use crate::image::Image;
 use crate::image::color::LUMINANCE;
-use crate::image::denoise::{Guides, MissingGuide, PASSES};
+use crate::image::denoise::{Guides, MissingGuide, PASSES, REACH};
 use crate::parallel::{map_parts, ranges};
 use crate::recording::pixel_at;
 use crate::verify::certificate::Outcome;
@@ -115,7 +115,8 @@ pub fn certify(noisy: &Image, denoised: &Image) -> Result<DenoiseCertificate, Mi
         albedo: [r, g, b].map(exact),
     });
     let guides: Vec<LegalGuide> = guides.collect();
-    let lights = filtered(&guides, [noisy.width(), noisy.height()], lights);
+    let all = 0..lights.len();
+    let lights = filtered(&guides, [noisy.width(), noisy.height()], lights, all);
     let mut certificate = DenoiseCertificate::default();
     for (index, (light, guide)) in lights.iter().zip(&guides).enumerate() {
         // If the picture has another size, pixels that it lacks are not legal.
@@ -164,12 +165,48 @@ pub(super) struct LegalGuide {
     pub(super) albedo: [Interval; 3],
 }
 
-/// The light that the passes may give to all pixels of a picture.
-pub(super) fn filtered(guides: &[LegalGuide], size: [u32; 2], mut lights: Vec<Light>) -> Vec<Light> {
+/// The pixels of a picture that are at most `reach` pixels away from some others, along each axis.
+pub(super) fn near([width, height]: [u32; 2], indices: impl Iterator<Item = usize>, reach: u32) -> Vec<bool> {
+    let [width, height, reach] = [width, height, reach].map(|side| side as usize);
+    let mut rows = vec![false; width * height];
+    for index in indices {
+        let [i, j] = [index % width, index / width];
+        rows[j * width + i.saturating_sub(reach)..j * width + (i + reach + 1).min(width)].fill(true);
+    }
+    let mut all = vec![false; width * height];
+    for i in 0..width {
+        let mut mark = |rows_in_turn: &mut dyn Iterator<Item = usize>| {
+            let mut last = None;
+            for j in rows_in_turn {
+                if rows[j * width + i] {
+                    last = Some(j);
+                }
+                all[j * width + i] |= last.is_some_and(|last: usize| last.abs_diff(j) <= reach);
+            }
+        };
+        mark(&mut (0..height));
+        mark(&mut (0..height).rev());
+    }
+    all
+}
+
+/// The light that the passes may give to some pixels of a picture, given that of all pixels within their reach.
+pub(super) fn filtered(
+    guides: &[LegalGuide],
+    size: [u32; 2],
+    mut lights: Vec<Light>,
+    indices: impl Iterator<Item = usize> + Clone,
+) -> Vec<Light> {
     let filter = Filter { guides, size: size.map(i64::from) };
     for pass in 0..PASSES {
+        // The reach of the passes after this one.
+        let wanted = near(size, indices.clone(), REACH - 2 * ((2 << pass) - 1));
         let parts = map_parts(ranges(lights.len(), CHUNK), |range| {
-            range.map(|index| filter.filtered(&lights, index, 1 << pass)).collect::<Vec<Light>>()
+            let light = |index: usize| match wanted[index] {
+                true => filter.filtered(&lights, index, 1 << pass),
+                false => lights[index],
+            };
+            range.map(light).collect::<Vec<Light>>()
         });
         lights = parts.concat();
     }

@@ -10,7 +10,7 @@
 //! that differs stays open, and the picture undecided.
 
 use super::certificate::{CHUNK, KEPT, Outcome, channel_name};
-use super::written::{WrittenError, WrittenPicture, WrittenViolation};
+use super::written::{Samples, WrittenError, WrittenPicture, WrittenViolation};
 use crate::camera::View;
 use crate::parallel::{map_parts, ranges};
 use crate::recording::pixel_at;
@@ -121,19 +121,88 @@ impl FinishedCertificate {
     }
 }
 
+/// Draws over the samples of a whole picture, which are as in [`Samples::Encoded`].
+pub type Annotate<'a> = dyn Fn(&mut [u8]) + 'a;
+
+/// A finished picture to judge.
+#[derive(Clone, Copy)]
+pub struct FinishedRequest<'a> {
+    /// The view, or those of a left and a right eye, whose pictures are side by side.
+    pub views: &'a [View<'a>],
+    /// The settings.
+    pub settings: &'a RenderSettings,
+    /// The picture.
+    pub picture: &'a WrittenPicture<'a>,
+    /// The picture of the CPU reference with the same settings, finished and encoded by the same code, but for what is
+    /// drawn over it.
+    pub exact: &'a WrittenPicture<'a>,
+    /// What is drawn over encoded samples, such as labels. It may depend on the samples.
+    pub annotate: Option<&'a Annotate<'a>>,
+}
+
+/// The least and the greatest samples of a pixel, if something is known.
+type Range = Option<[[f64; 2]; 4]>;
+
+impl FinishedRequest<'_> {
+    /// The picture of the reference with what is drawn over it.
+    fn annotated(&self) -> Option<Vec<u8>> {
+        self.annotated_by(|_| {})
+    }
+
+    /// The samples of the exact picture after a change, and with what is drawn over it.
+    fn annotated_by(&self, change: impl Fn(&mut [u8])) -> Option<Vec<u8>> {
+        let (annotate, Samples::Encoded(exact)) = (self.annotate?, self.exact.samples) else { return None };
+        let mut samples = exact.to_vec();
+        change(&mut samples);
+        annotate(&mut samples);
+        Some(samples)
+    }
+
+    /// Draws over pixels with these indices and ranges.
+    fn drawn(&self, indices: &[usize], ranges: Vec<Range>, exact: Vec<u8>) -> Vec<Range> {
+        // What is drawn changes with each sample in one direction. It may depend on alpha in either.
+        let corners = [[0, 0], [0, 1], [1, 0], [1, 1]].map(|[of_color, of_alpha]| {
+            let with_range = |samples: &mut [u8]| {
+                for (index, range) in indices.iter().zip(&ranges) {
+                    let [r, g, b, alpha] = range.unwrap_or([[0.0, f64::from(self.exact.encoding.bits.white())]; 4]);
+                    let sample = [r[of_color], g[of_color], b[of_color], alpha[of_alpha]];
+                    self.exact.put(samples, *index, sample);
+                }
+            };
+            self.annotated_by(with_range)
+        });
+        let corners: Vec<Vec<u8>> = corners.into_iter().flatten().chain([exact]).collect();
+        let drawn = |(index, range): (&usize, Range)| {
+            range?;
+            let at = |samples: &Vec<u8>| {
+                WrittenPicture { samples: Samples::Encoded(samples), ..*self.exact }
+                    .at(*index)
+                    .map(|sample| [sample; 2])
+            };
+            let join =
+                |a: [[f64; 2]; 4], b: [[f64; 2]; 4]| [0, 1, 2, 3].map(|c| [a[c][0].min(b[c][0]), a[c][1].max(b[c][1])]);
+            corners.iter().map(at).reduce(join)
+        };
+        indices.iter().zip(ranges).map(drawn).collect()
+    }
+}
+
 impl Checker<'_> {
-    /// The light that a conforming device may have for some pixels of a finished picture of a studio, given by their
-    /// indices row by row from the top: red, green and blue. `None` if hardly anything is known, as in pictures that are
-    /// not studios, or have translucent spheres.
+    /// The light that a conforming device may have for some pixels of a finished picture, given by their indices row by
+    /// row from the top: red, green, blue and alpha. `None` if hardly anything is known, as in studios with translucent
+    /// spheres.
     #[must_use]
     pub fn legal_light(
         &self,
         view: &View<'_>,
         settings: &RenderSettings,
         indices: &[usize],
-    ) -> Vec<Option<[Interval; 3]>> {
+    ) -> Vec<Option<[Interval; 4]>> {
         if indices.is_empty() {
             return Vec::new();
+        }
+        if let Some(primary) = settings.primary() {
+            return self.legal_colors(view, &primary, indices);
         }
         match forward::inputs(self, view, settings) {
             Some(inputs) => {
@@ -145,37 +214,51 @@ impl Checker<'_> {
         }
     }
 
-    /// Judges every pixel of a finished picture. `exact` is the picture of the CPU reference with the same settings,
-    /// finished and encoded by the same code. `is_annotated` says whether something is drawn over both.
+    /// Judges every pixel of a finished picture.
     ///
     /// # Errors
-    /// Returns an error if a picture is not as large as the view, or has another number of samples.
-    pub fn certify_finished(
-        &self,
-        view: &View<'_>,
-        settings: &RenderSettings,
-        [picture, exact]: [&WrittenPicture<'_>; 2],
-        is_annotated: bool,
-    ) -> Result<FinishedCertificate, WrittenError> {
-        let size = exact.size;
+    /// Returns an error if a picture is not as large as the views together, or has another number of samples.
+    pub fn certify_finished(&self, request: FinishedRequest<'_>) -> Result<FinishedCertificate, WrittenError> {
+        let FinishedRequest { views, settings, picture, exact, .. } = request;
+        let Some(View { film, .. }) = views.first() else { return Ok(FinishedCertificate::default()) };
+        let [width, height] = [film.width(), film.height()];
+        let size = [width * views.len() as u32, height];
         picture.check(size)?;
         exact.check(size)?;
-        let has_intervals = !is_annotated && size == [view.film.width(), view.film.height()];
-        let by_intervals = settings.primary().filter(|_| has_intervals);
-        let legal = by_intervals.map(|primary| self.certify_written(view, &primary, picture)).transpose()?;
-        let encoding = picture.encoding;
-        let is_plain = has_intervals && !encoding.transparent && encoding.kept_background().is_none();
-        let count = size[0] as usize * size[1] as usize;
-        let parts = map_parts(ranges(count, CHUNK), |range| {
-            range.filter_map(|index| Some((index, picture.difference(exact, index)?))).collect::<Vec<_>>()
-        });
-        let (indices, differences): (Vec<usize>, Vec<_>) = parts.into_iter().flatten().unzip();
-        let lights = if is_plain { self.legal_light(view, settings, &indices) } else { vec![None; indices.len()] };
+        let annotated = request.annotated();
+        let by_intervals = settings.primary().filter(|_| views.len() == 1 && annotated.is_none());
+        let legal = by_intervals.map(|primary| self.certify_written(&views[0], &primary, picture)).transpose()?;
+        let exact = match &annotated {
+            Some(samples) => WrittenPicture { samples: Samples::Encoded(samples), ..*exact },
+            None => *exact,
+        };
+        let count = size[0] as usize * height as usize;
+        let differs = |index: usize| picture.difference(&exact, index).is_some();
+        let parts = map_parts(ranges(count, CHUNK), |range| range.filter(|index| differs(*index)).collect::<Vec<_>>());
+        let different = parts.concat();
+        let mut ranges = vec![None; different.len()];
+        if legal.is_none() {
+            for (eye, view) in views.iter().enumerate() {
+                // The pixels of this eye: their places in the list, and their indices in its picture.
+                let [first, width] = [eye * width as usize, width as usize];
+                let of_eye = different.iter().enumerate().filter_map(|(at, index)| {
+                    let [i, j] = [index % size[0] as usize, index / size[0] as usize];
+                    (first..first + width).contains(&i).then_some((at, j * width + i - first))
+                });
+                let (places, indices): (Vec<usize>, Vec<usize>) = of_eye.unzip();
+                for (at, light) in places.into_iter().zip(self.legal_light(view, settings, &indices)) {
+                    ranges[at] = light.and_then(|light| exact.of_light(light));
+                }
+            }
+        }
+        if let Some(samples) = annotated.clone() {
+            ranges = request.drawn(&different, ranges, samples);
+        }
         let mut all =
             FinishedCertificate { verdicts: vec![PixelVerdict::Exact; count], ..FinishedCertificate::default() };
-        for ((index, light), (channel, [found, exact])) in indices.into_iter().zip(lights).zip(differences) {
+        for (index, range) in different.into_iter().zip(ranges) {
             let pixel = pixel_at(index, size[0]);
-            let judged = light.map(|light| picture.judge_light(index, light));
+            let judged = range.map(|range| picture.judge_range(index, range));
             all.verdicts[index] = match (&legal, judged) {
                 (Some(_), _) | (None, Some(Ok(true))) => PixelVerdict::Legal,
                 (None, Some(Ok(false))) => PixelVerdict::Wide,
@@ -186,7 +269,9 @@ impl Checker<'_> {
                     PixelVerdict::Violated
                 }
             };
-            if matches!(all.verdicts[index], PixelVerdict::Open | PixelVerdict::Wide) {
+            if let (PixelVerdict::Open | PixelVerdict::Wide, Some((channel, [found, exact]))) =
+                (all.verdicts[index], picture.difference(&exact, index))
+            {
                 all.open.push(PixelDifference { pixel, channel, found, exact });
             }
         }

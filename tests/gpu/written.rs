@@ -4,7 +4,7 @@ use libtest_mimic::{Failed, Trial};
 use pinhole::gpu::{Headless, Wait};
 use pinhole::image::encoding::Bits;
 use pinhole::render::{Outline, RenderSettings};
-use pinhole::verify::finished::{FinishedCertificate, LEAST_EXACT, PixelVerdict};
+use pinhole::verify::finished::{FinishedCertificate, FinishedRequest, LEAST_EXACT, PixelVerdict};
 use pinhole::verify::written::{Samples, WrittenCertificate, WrittenPicture};
 use pinhole::verify::{Checker, Interval, Outcome};
 use pinhole::{Encoding, Image, Integrator, LayerSet, cpu};
@@ -123,7 +123,9 @@ impl<'a> Pictures<'a> {
         };
         let size = [images[0].width(), images[0].height()];
         let pictures = [0, 1].map(|which| WrittenPicture { size, samples: samples(which), encoding: &encoding });
-        Ok(Checker::new(&view.scene)?.certify_finished(&view.seen(), settings, pictures.each_ref(), false)?)
+        let [picture, exact] = &pictures;
+        let request = FinishedRequest { views: &[view.seen()], settings, picture, exact, annotate: None };
+        Ok(Checker::new(&view.scene)?.certify_finished(request)?)
     }
 }
 
@@ -136,7 +138,7 @@ pub(crate) fn finished(device: &Headless, view: &View, is_finished: bool) -> Res
     for (index, legal) in legal.into_iter().enumerate() {
         for (image, name) in pictures.images.iter().zip(["the device", "the reference"]) {
             let color = image.color()[index];
-            let is_legal = |legal: &[Interval; 3]| legal.iter().zip(color).all(|(legal, c)| legal.contains(c.into()));
+            let is_legal = |legal: &[Interval; 4]| legal.iter().zip(color).all(|(legal, c)| legal.contains(c.into()));
             if legal.is_some_and(|legal| !is_legal(&legal)) {
                 return Err(format!("pixel {index} of {name}: {color:?}; legal is {legal:?}").into());
             }

@@ -13,7 +13,7 @@ use crate::terminal::failure::Failure;
 use crate::terminal::progress;
 use pinhole::image::Image;
 use pinhole::image::encoding::Encoding;
-use pinhole::verify::finished::{FinishedCertificate, LEAST_EXACT, MOST_WIDE, PixelVerdict};
+use pinhole::verify::finished::{Annotate, FinishedCertificate, FinishedRequest, LEAST_EXACT, MOST_WIDE, PixelVerdict};
 use pinhole::verify::picture_certificate::{PictureCertificate, samples_digest, scene_digest};
 use pinhole::verify::written::{Samples, WrittenPicture};
 use pinhole::verify::{Checker, Outcome};
@@ -80,12 +80,16 @@ pub(crate) fn judge(
     let (layers, stop_rule) = (Outputs::unwritten(outputs.format).layers(encoding), StopRule::default());
     let views = &views_of(input, input.film);
     let image = render_joined(&Shot { input, views, layers, stop_rule, opened: &OpenDevice::Cpu })?;
-    let exact = FilePicture::of(&image, encoding, outputs)?;
+    let annotations = &outputs.annotations;
+    let plain = Outputs::unwritten(outputs.format);
+    let exact = FilePicture::of(&image, encoding, &plain)?;
     progress::stage("checking");
     let checker = Checker::new(&input.scene).context("the checker cannot be prepared")?;
-    let is_annotated = !outputs.annotations.is_empty();
-    let pictures = [written, &exact].map(|picture| picture.picture(encoding));
-    let judged = checker.certify_finished(&input.view(), &input.settings, pictures.each_ref(), is_annotated);
+    let draw = |samples: &mut [u8]| annotations.draw_over([image.width(), image.height()], encoding, samples);
+    let [picture, exact] = [written, &exact].map(|picture| picture.picture(encoding));
+    let annotate = (!annotations.is_empty()).then_some(&draw as &Annotate<'_>);
+    let (settings, picture, exact) = (&input.settings, &picture, &exact);
+    let judged = checker.certify_finished(FinishedRequest { views, settings, picture, exact, annotate });
     Ok(judged.map_err(anyhow::Error::from)?)
 }
 

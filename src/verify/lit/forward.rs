@@ -59,10 +59,11 @@ impl LitCheck<'_> {
     /// The means of all samples of a pixel; `None` if hardly anything is known.
     pub(crate) fn legal_pixel(&self, pixel: [u32; 2], hits: &mut LegalHits) -> Option<PixelLight> {
         let samples = self.inputs.settings.sampling.samples.max(1);
-        let (mut color, mut albedo) = ([Mean::default(); 3], [Mean::default(); 3]);
+        let (mut color, mut albedo, mut alpha) = ([Mean::default(); 3], [Mean::default(); 3], Mean::default());
         let mut luminances = Vec::with_capacity(samples as usize);
         for sample in 0..samples {
             let LegalSample { light, first } = self.legal_sample(Address { pixel, sample, surface: 0 }, hits)?;
+            alpha.add(light.opacity.interval());
             let light = light.radiance;
             color.iter_mut().zip(light.intervals()).for_each(|(mean, more)| mean.add(more));
             albedo.iter_mut().zip(first.intervals()).for_each(|(mean, more)| mean.add(more));
@@ -71,8 +72,9 @@ impl LitCheck<'_> {
         let count = f64::from(samples);
         // The rounding errors of the sum of colours are added to it, so that those of the errors and of the mean remain.
         let color = color.map(|mean| mean.of(count, PAD * (2.0 + count * count * U) * U));
-        let albedo = albedo.map(|mean| mean.of(count, PAD * (count + 2.0) * U));
-        Some(PixelLight { color, albedo, variance: variance(&luminances) })
+        let plain = PAD * (count + 2.0) * U;
+        let albedo = albedo.map(|mean| mean.of(count, plain));
+        Some(PixelLight { color, alpha: alpha.of(count, plain), albedo, variance: variance(&luminances) })
     }
 
     /// The distance between rays that start at different places along the axis, because their origins are rounded. A
@@ -138,6 +140,7 @@ impl LitCheck<'_> {
 #[derive(Clone, Debug)]
 pub(crate) struct PixelLight {
     pub(crate) color: [Interval; 3],
+    pub(crate) alpha: Interval,
     /// The mean colour of the first surfaces.
     pub(crate) albedo: [Interval; 3],
     /// The variance of the mean luminance.

@@ -4,11 +4,12 @@
 use glam::DVec3;
 
 use crate::image::NO_ID;
+use crate::image::denoise::REACH;
 use crate::image::outline::{self, Outline};
 use crate::parallel::{map_parts, ranges};
 use crate::recording::pixel_at;
 use crate::verify::certificate::CHUNK;
-use crate::verify::denoised::{LegalGuide, Light, filtered, product};
+use crate::verify::denoised::{LegalGuide, Light, filtered, near, product};
 use crate::verify::hit::LegalHits;
 use crate::verify::lit::check::LitCheck;
 use crate::verify::lit::forward::PixelLight;
@@ -32,23 +33,39 @@ struct Spot {
 }
 
 impl LitCheck<'_> {
-    /// The finished light of some pixels, by their indices; `None` for a pixel about which hardly anything is known.
-    pub(crate) fn finished_light(&self, indices: &[usize]) -> Vec<Option<[Interval; 3]>> {
+    /// The finished light of some pixels, by their indices, and their alpha; `None` for a pixel about which hardly
+    /// anything is known.
+    pub(crate) fn finished_light(&self, indices: &[usize]) -> Vec<Option<[Interval; 4]>> {
         let size = self.inputs.size;
         let count = size[0] as usize * size[1] as usize;
         let settings = &self.inputs.settings;
         let lines = settings.studio_parameters().and_then(|studio| studio.outline);
         let is_denoised = settings.sampling.denoise;
-        let spots = if is_denoised || lines.is_some() { self.spots(count) } else { Vec::new() };
-        let mut light: Vec<Option<[Interval; 3]>> = if is_denoised {
-            let lights = self.all_pixels(count, |pixel, hits| self.legal_pixel(pixel, hits));
-            let quiet = without_noise(size, &lights, &spots);
-            indices.iter().map(|index| Some(quiet[*index])).collect()
+        // Light and hits are needed as far as they reach the pixels.
+        let of_lines = lines.map_or(0, |lines| outline::halo(lines.width) as u32 + 2);
+        let reach = if is_denoised { REACH.max(of_lines) } else { of_lines };
+        let needed = near(size, indices.iter().copied(), reach);
+        let needed = |pixel: [u32; 2]| needed[pixel[1] as usize * size[0] as usize + pixel[0] as usize];
+        let spots = match is_denoised || lines.is_some() {
+            true => self.all_pixels(count, |pixel, hits| needed(pixel).then(|| self.spot(pixel, hits)).flatten()),
+            false => Vec::new(),
+        };
+        let mut light: Vec<Option<[Interval; 4]>> = if is_denoised {
+            let light =
+                |pixel: [u32; 2], hits: &mut LegalHits| needed(pixel).then(|| self.legal_pixel(pixel, hits)).flatten();
+            let lights = self.all_pixels(count, light);
+            let quiet = without_noise(size, &lights, &spots, indices);
+            let any_alpha = Interval { low: 0.0, high: 1.0 };
+            let alpha = |index: usize| lights[index].as_ref().map_or(any_alpha, |light| light.alpha);
+            indices.iter().map(|index| Some(with_alpha(quiet[*index], alpha(*index)))).collect()
         } else {
             let parts = map_parts(ranges(indices.len(), 16), |range| {
                 let mut hits = LegalHits::default();
                 let light = |at: usize| self.legal_pixel(pixel_at(indices[at], size[0]), &mut hits);
-                range.map(light).map(|light| light.map(|light| light.color)).collect::<Vec<_>>()
+                range
+                    .map(light)
+                    .map(|light| light.map(|light| with_alpha(light.color, light.alpha)))
+                    .collect::<Vec<_>>()
             });
             parts.concat()
         };
@@ -67,10 +84,6 @@ impl LitCheck<'_> {
             range.map(|index| find(pixel_at(index, self.inputs.size[0]), &mut hits)).collect::<Vec<T>>()
         });
         parts.concat()
-    }
-
-    fn spots(&self, count: usize) -> Vec<Option<Spot>> {
-        self.all_pixels(count, |pixel, hits| self.spot(pixel, hits))
     }
 
     fn spot(&self, pixel: [u32; 2], hits: &mut LegalHits) -> Option<Spot> {
@@ -115,13 +128,19 @@ fn divisors(PixelLight { color, albedo, .. }: &PixelLight) -> [Interval; 3] {
     })
 }
 
-/// The light of all pixels after noise was removed.
-fn without_noise(size: [u32; 2], lights: &[Option<PixelLight>], spots: &[Option<Spot>]) -> Vec<[Interval; 3]> {
+/// The light of some pixels, by their indices, after noise was removed. Other elements mean nothing.
+fn without_noise(
+    size: [u32; 2],
+    lights: &[Option<PixelLight>],
+    spots: &[Option<Spot>],
+    indices: &[usize],
+) -> Vec<[Interval; 3]> {
     let luminance = |color: [f64; 3]| (0..3).map(|i| crate::image::color::LUMINANCE[i] * color[i]).sum::<f64>();
     let (mut guides, mut divided) = (Vec::with_capacity(spots.len()), Vec::with_capacity(spots.len()));
     for (light, spot) in lights.iter().zip(spots) {
         let unknown = PixelLight {
             color: [ANY_LIGHT; 3],
+            alpha: Interval { low: 0.0, high: 1.0 },
             albedo: [Interval { low: 0.0, high: 1.0 + 4.0 * U }; 3],
             variance: Interval { low: 0.0, ..ANY_LIGHT },
         };
@@ -151,7 +170,7 @@ fn without_noise(size: [u32; 2], lights: &[Option<PixelLight>], spots: &[Option<
             albedo,
         });
     }
-    let quiet = filtered(&guides, size, divided);
+    let quiet = filtered(&guides, size, divided, indices.iter().copied());
     let color = |(light, guide): (&Light, &LegalGuide)| [0, 1, 2].map(|i| product(light[i], guide.albedo[i]));
     quiet.iter().zip(&guides).map(color).collect()
 }
@@ -229,10 +248,15 @@ fn covered(size: [u32; 2], spots: &[Option<Spot>], outline: &Outline) -> Vec<[f6
     covered
 }
 
-/// Light over which a line is drawn.
-fn mixed(light: [Interval; 3], share: [f64; 2], outline: &Outline) -> [Interval; 3] {
-    let line = outline.color.to_array().map(f64::from);
-    [0, 1, 2].map(|channel| {
+fn with_alpha([r, g, b]: [Interval; 3], alpha: Interval) -> [Interval; 4] {
+    [r, g, b, alpha]
+}
+
+/// Light over which a line is drawn, and its alpha.
+fn mixed(light: [Interval; 4], share: [f64; 2], outline: &Outline) -> [Interval; 4] {
+    let [r, g, b] = outline.color.to_array().map(f64::from);
+    let line = [r, g, b, 1.0];
+    [0, 1, 2, 3].map(|channel| {
         let over = |light: f64, share: f64| light + share * (line[channel] - light);
         let Interval { low, high } = light[channel];
         let least = over(low, share[0]).min(over(low, share[1]));

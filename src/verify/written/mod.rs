@@ -15,7 +15,7 @@ use std::fmt;
 
 pub use samples::{Samples, WrittenError, WrittenPicture};
 
-use samples::{LegalSample, PictureCheck};
+use samples::{LegalColor, LegalSample, PictureCheck};
 
 use super::certificate::{CHUNK, KEPT, Outcome, Verdict, channel_name};
 use super::checker::Checker;
@@ -24,6 +24,7 @@ use crate::camera::View;
 use crate::parallel::{map_parts, ranges};
 use crate::recording::pixel_at;
 use crate::render::PrimarySettings;
+use crate::verify::rounding::Interval;
 
 /// A pixel that no conforming device may have produced.
 #[derive(Clone, Debug, PartialEq)]
@@ -82,6 +83,29 @@ impl WrittenCertificate {
 }
 
 impl Checker<'_> {
+    /// The colours that a conforming device may have for some pixels, by their indices, and their alpha: everything
+    /// between the colours of all legal answers.
+    pub(super) fn legal_colors(
+        &self,
+        view: &View<'_>,
+        primary: &PrimarySettings,
+        indices: &[usize],
+    ) -> Vec<Option<[Interval; 4]>> {
+        let check = PictureCheck::new(self, view, primary);
+        let (mut hits, mut colors) = (LegalHits::default(), Vec::new());
+        let legal = |index: &usize| {
+            check.legal(pixel_at(*index, view.film.width()), &mut hits, &mut colors);
+            let channels = |color: &LegalColor| {
+                let [r, g, b] = color.color;
+                let alpha = if color.is_hit || !primary.is_transparent { 1.0 } else { 0.0 };
+                [r, g, b, Interval { low: alpha, high: alpha }]
+            };
+            let join = |a: [Interval; 4], b: [Interval; 4]| [0, 1, 2, 3].map(|c| a[c].union(b[c]));
+            colors.iter().map(channels).reduce(join)
+        };
+        indices.iter().map(legal).collect()
+    }
+
     /// Judges every sample of a picture of primary rays, as it is in its file.
     ///
     /// # Errors

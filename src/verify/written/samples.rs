@@ -203,21 +203,95 @@ impl WrittenPicture<'_> {
         LegalSample(channels)
     }
 
-    /// Judges a pixel by the light that it may have: whether the interval decides something, or the first channel that
-    /// is not legal, with its legal samples.
-    pub(in crate::verify) fn judge_light(&self, index: usize, color: [Interval; 3]) -> Result<bool, (usize, [f64; 2])> {
-        // The sample of NaN is zero.
-        if color.iter().any(|c| c.low.is_nan() || c.high.is_nan()) {
-            return Ok(false);
+    /// The least and the greatest samples for light and alpha between the ends of intervals. `None` if nothing is known.
+    pub(in crate::verify) fn of_light(&self, [r, g, b, alpha]: [Interval; 4]) -> Option<[[f64; 2]; 4]> {
+        let color = [r, g, b];
+        let Self { samples, encoding, .. } = self;
+        if color.iter().chain([&alpha]).any(|c| c.low.is_nan() || c.high.is_nan()) {
+            return None;
         }
-        let legal = self.legal(&LegalColor { color, is_hit: true }, false);
-        if let Some(violation) = LegalSample::judge(&[legal], &self.at(index)) {
+        let known = |c: Interval| [c.low, c.high];
+        let Samples::Encoded(_) = samples else {
+            let alpha = if encoding.transparent { known(alpha) } else { [1.0; 2] };
+            return Some([known(r), known(g), known(b), alpha]);
+        };
+        let ends = |color: [Interval; 3]| [color.map(|c| down(c.low)), color.map(|c| up(c.high))];
+        let Interval { low: least, high: most } = alpha;
+        let light = match encoding.kept_background() {
+            Some(background) => {
+                // As `Encoding::display_over` computes, with intervals.
+                let background = background.to_array().map(f64::from);
+                let shares = [(1.0 - most).max(0.0), (1.0 - least).min(1.0)];
+                let in_front = |c: usize| {
+                    let off = 8.0 * U * (color[c].high.abs() + background[c]);
+                    let low = divided(color[c].low - background[c] * shares[1] - off, [most, least]);
+                    let high = divided(color[c].high - background[c] * shares[0] + off, [least, most]);
+                    Interval { low: low.max(0.0), high: high.max(0.0) }
+                };
+                let [low, high] = encoding.display_range(ends([0, 1, 2].map(in_front)));
+                let over = |shown: f32, alpha: f64, c: usize| {
+                    alpha.max(0.0) * f64::from(shown.clamp(0.0, 1.0)) + (1.0 - alpha.max(0.0)) * background[c]
+                };
+                let around = |c: usize| {
+                    let corners = [
+                        over(low[c], least, c),
+                        over(low[c], most, c),
+                        over(high[c], least, c),
+                        over(high[c], most, c),
+                    ];
+                    let [low, high] =
+                        [f64::min as fn(f64, f64) -> f64, f64::max].map(|f| corners.into_iter().fold(corners[0], f));
+                    Interval::around(0.5 * (low + high), 0.5 * (high - low) + 8.0 * U * (1.0 + high.abs()))
+                };
+                ends([0, 1, 2].map(around))
+            }
+            None if encoding.transparent => {
+                let divided =
+                    |c: Interval| Interval { low: divided(c.low, [most, least]), high: divided(c.high, [least, most]) };
+                let mut ends = encoding.display_range(ends(color.map(divided)));
+                if least <= 0.0 {
+                    ends[0] = [0.0; 3];
+                }
+                ends
+            }
+            None => encoding.display_range(ends(color)),
+        };
+        let [low, high] = light.map(|light| encode(encoding.bits, light));
+        let white = f64::from(encoding.bits.white());
+        let alpha = match encoding.transparent {
+            true => [
+                (white * least.clamp(0.0, 1.0) - 0.01).max(0.0).round(),
+                (white * most.clamp(0.0, 1.0) + 0.01).round().min(white),
+            ],
+            false => [0.0; 2],
+        };
+        Some([[low[0], high[0]], [low[1], high[1]], [low[2], high[2]], alpha])
+    }
+
+    /// Judges a pixel by its least and greatest samples: whether they decide something, or the first channel that is not
+    /// legal.
+    pub(in crate::verify) fn judge_range(&self, index: usize, legal: [[f64; 2]; 4]) -> Result<bool, (usize, [f64; 2])> {
+        if let Some(violation) = LegalSample::judge(&[LegalSample(legal)], &self.at(index)) {
             return Err(violation);
         }
-        // Light in display units; brighter than white is one value.
-        let ends = |low: bool| color.map(|c| to_srgb16([if low { c.low } else { c.high } as f32; 3])[0]);
-        let widths = ends(false).into_iter().zip(ends(true)).map(|(high, low)| high.abs_diff(low));
-        Ok(widths.max() <= Some(WIDEST))
+        let widths = legal.iter().map(|[low, high]| match self.samples {
+            Samples::Encoded(_) => (high - low) / f64::from(self.encoding.bits.white()),
+            // Light brighter than white is one value.
+            Samples::Linear(_) => {
+                let [[low, ..], [high, ..]] = [low, high].map(|end| to_srgb16([*end as f32; 3]));
+                f64::from(high - low) / 65535.0
+            }
+        });
+        Ok(widths.fold(0.0, f64::max) <= WIDEST)
+    }
+
+    /// Writes samples of a pixel into bytes like those of this picture.
+    pub(in crate::verify) fn put(&self, bytes: &mut [u8], index: usize, samples: [f64; 4]) {
+        let [size, channels] = self.layout();
+        let pixel = &mut bytes[index * size * channels..][..size * channels];
+        for (bytes, sample) in pixel.chunks_exact_mut(size).zip(samples) {
+            bytes.copy_from_slice(&(sample as u16).to_be_bytes()[2 - size..]);
+        }
     }
 
     /// The least and the greatest display light for legal colours.
@@ -241,8 +315,17 @@ fn is_near(found: f64, exact: f64) -> bool {
     found.abs_diff(exact) <= 1
 }
 
-/// The widest interval that decides a pixel, in steps of 16 bits: 16 of 8 bits.
-const WIDEST: u16 = 16 * 257;
+/// The widest interval that decides a pixel, as a share of white: 16 of 256 values.
+const WIDEST: f64 = 16.0 / 255.0;
+
+/// A number divided by one of the ends of an interval of alpha: by the first if it is not negative.
+fn divided(number: f64, [first, second]: [f64; 2]) -> f64 {
+    let alpha = if number >= 0.0 { first } else { second };
+    if alpha > 0.0 { number / alpha } else { number * BRIGHT }
+}
+
+/// More than any light.
+const BRIGHT: f64 = 1e30;
 
 /// Encodes display light as the writers do. Brighter light never gives a smaller sample.
 fn encode(bits: Bits, light: [f32; 3]) -> [f64; 3] {

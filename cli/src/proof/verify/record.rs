@@ -23,12 +23,9 @@ use crate::terminal::failure::Failure;
 use crate::terminal::progress::{self, tell};
 use crate::terminal::{interrupt, memory, threads};
 use pinhole::accel::{AccelChoice, Structure};
-use pinhole::camera::View;
-use pinhole::camera::film::{Film, FilmError};
-use pinhole::gpu::{Decision, Headless, LitPart, PictureRequest, Progress, SampleRequest, Wait};
+use pinhole::gpu::{Decision, Headless, LitPart, Progress, SampleRequest, Wait};
 use pinhole::image::color::to_srgb8;
 use pinhole::image::denoise::GUIDES;
-use pinhole::image::encoding::Encoding;
 use pinhole::image::{Image, LayerSet};
 use pinhole::verify::finished::FinishedCertificate;
 use pinhole::verify::run_file::{self, FinalPicture, LitSamples, Provenance, Run};
@@ -90,16 +87,9 @@ pub(crate) fn recorded(path: &Path, args: &VerifyArgs) -> Result<VerifyJob, Fail
     let mut kept = KeptLight { samples, ..KeptLight::default() };
     let certify = || certify_light(&headless, &input, chosen, choice, kept.samples.as_mut());
     let light = is_lit.then(certify).transpose()?;
-    if input.settings.sampling.denoise {
-        kept.denoised = Some(render_denoised(&headless, &input, choice)?);
-    }
-    let denoiser = kept.denoised.as_ref().map(report::judge).transpose()?;
     let scene = input.scene.clone();
-    let mut rendered = None;
-    if is_lit {
-        let (judged, shown) = judged_picture(input, headless, choice)?;
-        (rendered, kept.shown) = (Some(judged), Some(shown));
-    }
+    let rendered = is_lit.then(|| judged_picture(input, headless, choice, &mut kept)).transpose()?;
+    let denoiser = kept.denoised.as_ref().map(report::judge).transpose()?;
     let run = Run { scene: Arc::unwrap_or_clone(scene), recording, provenance };
     Ok(VerifyJob { run, outputs, light, denoiser, rendered, kept })
 }
@@ -215,79 +205,53 @@ fn chosen(all: u32, count: u32, seed: u32) -> Vec<u32> {
     chosen.into_iter().collect()
 }
 
-/// The longer side of the picture that is denoised, and its samples. A noisier picture tests the denoiser more.
-const DENOISED_SIDE: u32 = 160;
-const DENOISED_SAMPLES: u32 = 4;
-
-/// Renders a small noisy picture, and denoises it on the device.
-pub(crate) fn render_denoised(headless: &Headless, input: &Input, choice: AccelChoice) -> Result<[Image; 2], Failure> {
-    let mut settings = input.settings.unfinished();
-    settings.sampling.samples = settings.sampling.samples.min(DENOISED_SAMPLES);
-    let film =
-        shrunk(&input.film, DENOISED_SIDE).context("the picture is too narrow for its denoiser to be checked")?;
-    let view = View::new(input.camera.as_ref(), film);
-    let request = PictureRequest::new(&input.scene, &view, &settings, GUIDES);
-    let plan = |choice| headless.plan(&request, choice);
-    let done = with_structures(headless, choice, plan, |plan| {
-        interrupt::on_device(|| {
-            let buffers = upload(headless, &input.scene, plan)?;
-            progress::stage("checking the denoiser");
-            let watch = &mut |_: &_| interrupt::decide();
-            let noisy = headless.render_uploaded(&buffers, &view, &settings, GUIDES, watch).wait()?.image;
-            let quiet = headless.denoise(&noisy).wait()?;
-            Ok([noisy, quiet])
-        })
-    })?;
-    let (pictures, _) = done.map_err(|error| explained_alone(headless, &error))?;
-    Ok(pictures)
-}
-
-/// The same film with a longer side of at most this many pixels.
-fn shrunk(film: &Film, longest: u32) -> Result<Film, FilmError> {
-    let (width, height) = (film.width(), film.height());
-    let shrink = |side: u32| {
-        let side = u64::from(side) * u64::from(longest) / u64::from(width.max(height).max(longest));
-        side.max(1) as u32
-    };
-    Ok(Film::new(shrink(width), shrink(height))?.with_y_axis(film.y_axis()))
-}
-
 /// The most samples of the picture that is judged as a whole. More would take long, and the program takes them alike.
 const PICTURE_SAMPLES: u32 = 16;
 
-/// Renders the view that is checked as `render` does, with its light but few samples, and judges every pixel.
+/// Renders the view that is checked as `render` does, with its light but few samples, and judges every pixel of the raw
+/// picture. Keeps what the check of the denoiser and people need.
 fn judged_picture(
     mut input: Input,
     headless: Headless,
     choice: AccelChoice,
-) -> Result<(FinishedCertificate, FinalPicture), Failure> {
+    kept: &mut KeptLight,
+) -> Result<FinishedCertificate, Failure> {
     let wanted = input.settings.sampling.samples;
     let samples = wanted.min(PICTURE_SAMPLES);
     input.settings.sampling.samples = samples;
-    input.eyes = None;
     input.settings.is_transparent = input.encoding.transparent;
-    let mut encoding = input.encoding;
-    encoding.background = input.settings.visible_background();
-    let outputs = Outputs::unwritten(PictureFormat::Png);
+    input.eyes = None;
+    let finished = input.settings.clone();
+    input.settings = finished.unfinished();
+    let outputs = Outputs::unwritten(PictureFormat::Exr);
+    let layers = outputs.layers(&input.encoding);
     let opened = OpenDevice::Device { headless: Box::new(headless), choice, warning: None };
-    let image = render::render(&input, outputs.layers(&encoding), &opened)?;
-    let written = FilePicture::of(&image, &encoding, &outputs)?;
-    let certificate = certified::judge(&input, &encoding, &outputs, &written)?;
-    encoding.background = Some(input.settings.background);
-    Ok((certificate, shown(&image, &encoding, samples, wanted)))
+    let image = render::render(&input, finished.layers_for(layers), &opened)?;
+    let written = FilePicture::of(&image, &input.encoding, &outputs)?;
+    let certificate = certified::judge(&input, &input.encoding, &outputs, &written)?;
+    progress::stage("finishing");
+    if finished.sampling.denoise {
+        let mut without_lines = input.settings.clone();
+        without_lines.sampling.denoise = true;
+        let quiet = render::finish(image.clone(), &without_lines, GUIDES, &opened)?;
+        kept.denoised = Some([image.clone(), quiet]);
+    }
+    let image = render::finish(image, &finished, layers, &opened)?;
+    kept.shown = Some(shown(&image, &input, wanted));
+    Ok(certificate)
 }
 
 /// Encodes the picture as the scene specifies, but with its background.
-fn shown(image: &Image, encoding: &Encoding, samples: u32, wanted: u32) -> FinalPicture {
+fn shown(image: &Image, Input { settings, encoding, .. }: &Input, wanted: u32) -> FinalPicture {
     let (color, alpha) = (image.color(), image.alpha());
     let srgb = (0..color.len()).map(|i| {
-        to_srgb8(match (alpha, encoding.background) {
-            (Some(alpha), Some(background)) => encoding.display_over(color[i], alpha[i], background),
-            _ => encoding.display(color[i]),
+        to_srgb8(match alpha {
+            Some(alpha) => encoding.display_over(color[i], alpha[i], settings.background),
+            None => encoding.display(color[i]),
         })
     });
     let size = [image.width(), image.height()];
-    FinalPicture { size, srgb: srgb.collect(), samples, wanted }
+    FinalPicture { size, srgb: srgb.collect(), samples: settings.sampling.samples, wanted }
 }
 
 #[cfg(test)]

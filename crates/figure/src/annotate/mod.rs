@@ -24,6 +24,8 @@ mod plan;
 mod scale_bar;
 mod ticks;
 
+use pinhole::image::encoding::Encoding;
+
 pub use canvas::Canvas;
 pub use font::missing_characters;
 pub use legend::Legend;
@@ -95,6 +97,15 @@ impl Annotations {
     pub fn draw(&self, canvas: &mut Canvas<'_>) {
         let size = canvas.size();
         place::draw(&self.blocks(size), self.em(size), self.color, self.panel, canvas);
+    }
+
+    /// Draws the annotations over the samples of a picture of this size with an encoding: RGB or RGBA, row by row from the
+    /// top. Does nothing if there are not as many samples.
+    pub fn draw_over(&self, size: [u32; 2], encoding: &Encoding, samples: &mut [u8]) {
+        let channels = if encoding.transparent { 4 } else { 3 };
+        if let Some(mut canvas) = Canvas::new(size, channels, encoding.bits, samples) {
+            self.draw(&mut canvas);
+        }
     }
 
     fn blocks(&self, size: [u32; 2]) -> Vec<(Position, Block)> {

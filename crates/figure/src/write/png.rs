@@ -2,7 +2,7 @@
 
 use png::{BitDepth, ColorType, Compression, Filter, PixelDimensions, SrgbRenderingIntent, Unit};
 
-use crate::annotate::{Annotations, Canvas};
+use crate::annotate::Annotations;
 use pinhole::image::color::{to_srgb8, to_srgb16};
 use pinhole::image::encoding::{Bits, Encoding};
 use pinhole::image::{Image, Layer};
@@ -68,11 +68,7 @@ pub fn samples(picture: &Image, encoding: &Encoding) -> Result<Vec<u8>, PngError
 /// Returns an error if the picture lacks one of [the layers that the encoding needs](Encoding::layers).
 pub fn samples_annotated(picture: &Image, encoding: &Encoding, annotations: &Annotations) -> Result<Vec<u8>, PngError> {
     let mut samples = samples(picture, encoding)?;
-    let size = [picture.width(), picture.height()];
-    let channels = kind(encoding).0.samples();
-    if let Some(mut canvas) = Canvas::new(size, channels, encoding.bits, &mut samples) {
-        annotations.draw(&mut canvas);
-    }
+    annotations.draw_over([picture.width(), picture.height()], encoding, &mut samples);
     Ok(samples)
 }
 
