@@ -116,7 +116,7 @@ pub fn certify(noisy: &Image, denoised: &Image) -> Result<DenoiseCertificate, Mi
     });
     let guides: Vec<LegalGuide> = guides.collect();
     let all = 0..lights.len();
-    let lights = filtered(&guides, [noisy.width(), noisy.height()], lights, all);
+    let lights = filtered(&guides, [noisy.width(), noisy.height()], lights, &all);
     let mut certificate = DenoiseCertificate::default();
     for (index, (light, guide)) in lights.iter().zip(&guides).enumerate() {
         // If the picture has another size, pixels that it lacks are not legal.
@@ -195,7 +195,7 @@ pub(super) fn filtered(
     guides: &[LegalGuide],
     size: [u32; 2],
     mut lights: Vec<Light>,
-    indices: impl Iterator<Item = usize> + Clone,
+    indices: &(impl Iterator<Item = usize> + Clone),
 ) -> Vec<Light> {
     let filter = Filter { guides, size: size.map(i64::from) };
     for pass in 0..PASSES {

@@ -4,10 +4,10 @@
 //! the same code finishes both: it removes noise, draws lines and annotations, and encodes. What rounding changes within
 //! a pixel is mostly less than a step of the file, so that almost every pixel of a correct device *equals* the exact
 //! one. Where a ray passes an edge, rounding may decide otherwise, and a pixel differs. Such a pixel is judged by an
-//! interval: in pictures with one ray through each pixel, by [`written`](super::written), and in studios of opaque
-//! spheres by following all samples forward, with every branch that rounding may take, and through the removal of noise
-//! and the lines (`studio/forward.rs`, `studio/legal_picture.rs`). For other pictures there are no intervals: a pixel
-//! that differs stays open, and the picture undecided.
+//! interval: in pictures with one ray through each pixel, by [`written`](super::written), and in others by following all
+//! samples forward, with every branch that rounding may take, and through the removal of noise, the lines, the encoding
+//! and what is drawn over the picture (`lit/forward.rs`, `lit/legal_picture.rs`). If that says nothing about a pixel that
+//! differs, it stays open, and the picture undecided.
 
 use super::certificate::{CHUNK, KEPT, Outcome, channel_name};
 use super::written::{Samples, WrittenError, WrittenPicture, WrittenViolation};
@@ -189,8 +189,7 @@ impl FinishedRequest<'_> {
 
 impl Checker<'_> {
     /// The light that a conforming device may have for some pixels of a finished picture, given by their indices row by
-    /// row from the top: red, green, blue and alpha. `None` if hardly anything is known, as in studios with translucent
-    /// spheres.
+    /// row from the top: red, green, blue and alpha. `None` if hardly anything is known.
     #[must_use]
     pub fn legal_light(
         &self,
@@ -243,7 +242,7 @@ impl Checker<'_> {
                 let [first, width] = [eye * width as usize, width as usize];
                 let of_eye = different.iter().enumerate().filter_map(|(at, index)| {
                     let [i, j] = [index % size[0] as usize, index / size[0] as usize];
-                    (first..first + width).contains(&i).then_some((at, j * width + i - first))
+                    (first..first + width).contains(&i).then(|| (at, j * width + i - first))
                 });
                 let (places, indices): (Vec<usize>, Vec<usize>) = of_eye.unzip();
                 for (at, light) in places.into_iter().zip(self.legal_light(view, settings, &indices)) {

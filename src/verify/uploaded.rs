@@ -13,12 +13,17 @@ use crate::verify::rounding::{Interval, U};
 /// The expected margin of the box, relative to its diagonal. A device may have a larger or a smaller margin.
 const BOX_MARGIN: f32 = 1.0 / (1 << 17) as f32;
 
+/// The box of a device around spheres that lie between two corners.
+pub(super) fn expected_box(min: Vec3, max: Vec3) -> [Vec3; 2] {
+    let margin = Vec3::splat(BOX_MARGIN * (max - min).length());
+    [min - margin, max + margin]
+}
+
 /// The inputs of a device for a camera, if the spheres lie between two corners. If the camera has a plane, rays
 /// start at the depth of the nearest corner of the scene's box.
 pub(super) fn expected_view(camera: &RequestedCamera, scene_origin: DVec3, (min, max): (Vec3, Vec3)) -> UploadedView {
     let narrow = |v: DVec3| v.as_vec3().to_array();
-    let margin = Vec3::splat(BOX_MARGIN * (max - min).length());
-    let (min, max) = (min - margin, max + margin);
+    let [min, max] = expected_box(min, max);
     let CameraVectors { origin, right, up, forward, numbers } = camera.vectors;
     let origin = origin - scene_origin;
     let advance = nearest(camera, origin, [min, max].map(|v| v.as_dvec3())) as f32;

@@ -1,7 +1,7 @@
 //! All light that a conforming device may find for a pixel, from the camera to the mean of its samples. The kernels are
 //! those of the check of recordings, but their results are intervals instead of recorded numbers.
 
-use glam::{DVec2, DVec3};
+use glam::{DVec2, DVec3, Vec3};
 
 use crate::camera::View;
 use crate::camera::sampling::{pair, pixel_seed, unit};
@@ -12,6 +12,7 @@ use crate::recording::lighting::{HostLighting, emitter_records, max_surfaces, up
 use crate::recording::lit::{LitInputs, PathState, flag, slot};
 use crate::recording::{NO_HIT, RequestedCamera};
 use crate::render::RenderSettings;
+use crate::scene::Scene;
 use crate::verify::Checker;
 use crate::verify::hit::LegalHits;
 use crate::verify::lit::certificate::Address;
@@ -21,13 +22,12 @@ use crate::verify::lit::kernel::{RayHit, RayState};
 use crate::verify::number::{Number, Vector};
 use crate::verify::rounding::{FLUSH, Interval, PAD, U};
 use crate::verify::studio::light::Change;
-use crate::verify::uploaded::expected_view;
+use crate::verify::uploaded::{expected_box, expected_view};
 
-/// The numbers that a device gets for paths, or for a studio of opaque spheres; `None` for other pictures.
+/// The numbers that a device gets for a picture with light; `None` for other pictures.
 pub(crate) fn inputs(checker: &Checker<'_>, view: &View<'_>, settings: &RenderSettings) -> Option<LitInputs> {
     let scene = checker.scene;
-    let is_studio = settings.studio_parameters().is_some();
-    if scene.is_empty() || settings.integrator.is_primary() || (is_studio && !scene.is_opaque()) {
+    if scene.is_empty() || settings.integrator.is_primary() {
         return None;
     }
     let camera = RequestedCamera::of(view.camera);
@@ -40,8 +40,7 @@ pub(crate) fn inputs(checker: &Checker<'_>, view: &View<'_>, settings: &RenderSe
     };
     Some(LitInputs {
         camera,
-        // All spheres of a studio are opaque.
-        occluders: [uploaded.scene_min, uploaded.scene_max],
+        occluders: box_of_occluders(scene).unwrap_or([uploaded.scene_min, uploaded.scene_max]),
         uploaded,
         film: view.film,
         origin: [0; 2],
@@ -53,6 +52,18 @@ pub(crate) fn inputs(checker: &Checker<'_>, view: &View<'_>, settings: &RenderSe
         emitters: emitters_of_device.iter().map(|four| four.map(f32::to_bits)).collect(),
         sky: uploaded_sky(settings),
     })
+}
+
+/// The box of the opaque spheres, if there are some and not all are opaque.
+fn box_of_occluders(scene: &Scene) -> Option<[[f32; 3]; 2]> {
+    let ids = scene.opaque_ids().filter(|_| !scene.is_opaque());
+    let of_sphere = |id: u32| {
+        let [x, y, z, radius] = scene.spheres()[id as usize];
+        let (center, radius) = (Vec3::new(x, y, z), Vec3::splat(radius.abs()));
+        [center - radius, center + radius]
+    };
+    let [min, max] = ids.map(of_sphere).reduce(|[a, b], [c, d]| [a.min(c), b.max(d)])?;
+    Some(expected_box(min, max).map(|corner| corner.to_array()))
 }
 
 impl LitCheck<'_> {
@@ -127,7 +138,7 @@ impl LitCheck<'_> {
         let miss = RayHit { t: Number::known(NO_HIT.into()), distance: Number::ZERO, id: NO_ID, shape_index: 0 };
         for hit in found.chain(hits.miss.then_some(miss)) {
             let light = match self.is_studio {
-                true => self.legal_surface(address, &state, hit)?,
+                true => self.legal_surface(address, &state, hit, &mut 0)?,
                 false => self.legal_vertex(address, &state, hit, &mut 0)?,
             };
             light.join(&mut all);

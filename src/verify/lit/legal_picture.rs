@@ -170,7 +170,7 @@ fn without_noise(
             albedo,
         });
     }
-    let quiet = filtered(&guides, size, divided, indices.iter().copied());
+    let quiet = filtered(&guides, size, divided, &indices.iter().copied());
     let color = |(light, guide): (&Light, &LegalGuide)| [0, 1, 2].map(|i| product(light[i], guide.albedo[i]));
     quiet.iter().zip(&guides).map(color).collect()
 }

@@ -119,7 +119,7 @@ impl LitCheck<'_> {
     }
 
     /// The legal hits of the next ray; `None` if hardly anything is known of it.
-    fn next_hits(&self, state: &RayState) -> Option<Vec<RayHit>> {
+    pub(crate) fn next_hits(&self, state: &RayState) -> Option<Vec<RayHit>> {
         let entry = Entry::aimed(self.corners(), state.vector(slot::ORIGIN), state.vector(slot::DIRECTION))?;
         let departure = state.raw.departure();
         let departed = self.checker.scene.spheres().get(departure.id as usize).copied();

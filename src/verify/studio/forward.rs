@@ -1,6 +1,6 @@
-//! All light that a conforming device may find at a surface of a studio of opaque spheres.
+//! All light that a conforming device may find at the surfaces of a studio that a ray passes.
 
-use crate::recording::lit::slot;
+use crate::recording::lit::{flag, slot};
 use crate::verify::choices::Choices;
 use crate::verify::lit::certificate::Address;
 use crate::verify::lit::check::LitCheck;
@@ -11,27 +11,64 @@ use crate::verify::number::Number;
 use crate::verify::studio::light::Change;
 use crate::verify::studio::surface::HitKind;
 
+/// The most surfaces that are followed for a sample, along all branches.
+const MOST_SURFACES: u32 = 400;
+
 impl LitCheck<'_> {
-    /// The light of a surface that is hit, or of the ground or the background.
-    pub(crate) fn legal_surface(&self, address: Address, state: &RayState, hit: RayHit) -> Option<LegalSample> {
+    /// The light of a surface that is hit, or of the ground or the background, and of what is seen through it. `surfaces`
+    /// counts the surfaces of the sample so far.
+    pub(crate) fn legal_surface(
+        &self,
+        address: Address,
+        state: &RayState,
+        hit: RayHit,
+        surfaces: &mut u32,
+    ) -> Option<LegalSample> {
         let (mut choices, mut all) = (Choices::default(), None::<LegalSample>);
+        let is_last = address.surface + 1 >= self.inputs.max_surfaces;
         loop {
+            *surfaces += 1;
+            if *surfaces > MOST_SURFACES {
+                return None;
+            }
             let mut kernel = self.kernel(address, state, &mut choices);
             (kernel.hit, kernel.after) = (hit, Output::Legal(Box::new(state.clone())));
             // A combination of decisions that no device takes is a mismatch.
-            if let (Ok(met), Output::Legal(after)) = (kernel.follow_surface(true), kernel.after) {
+            if let (Ok(met), Output::Legal(after)) = (kernel.follow_surface(is_last), kernel.after) {
                 let own = Change { radiance: after.vector(slot::RADIANCE), opacity: after.number(slot::RADIANCE) };
                 let lit = match met {
                     HitKind::Surface => own.plus(self.legal_lights(address, &after)?),
                     HitKind::Nothing | HitKind::Emitter => own,
                 };
-                LegalSample { light: lit, first: after.vector(slot::FIRST) }.join(&mut all);
+                match after.has(flag::ALIVE) {
+                    true => self.legal_behind(address, *after, lit, surfaces)?,
+                    false => LegalSample { light: lit, first: after.vector(slot::FIRST) },
+                }
+                .join(&mut all);
             }
             if !choices.advance() {
                 break;
             }
         }
         all.filter(|_| !choices.were_too_many())
+    }
+
+    /// The light of all surfaces behind one that has this light so far.
+    fn legal_behind(
+        &self,
+        address: Address,
+        mut state: RayState,
+        lit: Change,
+        surfaces: &mut u32,
+    ) -> Option<LegalSample> {
+        (0..3).for_each(|channel| state.set([slot::RADIANCE, channel], lit.radiance.0[channel]));
+        state.set([slot::RADIANCE, 3], lit.opacity);
+        let next = Address { surface: address.surface + 1, ..address };
+        let mut all = None;
+        for hit in self.next_hits(&state)? {
+            self.legal_surface(next, &state, hit, surfaces)?.join(&mut all);
+        }
+        all
     }
 
     /// The light that lamps and ambient light add to a surface.
