@@ -170,7 +170,8 @@ fn run_files_keep_every_kind() {
         let recording = made(&kind.scene, &camera(), film());
         let written = |scene: &Scene| {
             let mut bytes = Vec::new();
-            run_file::write(scene, &recording, &run_file::Provenance::default(), &mut bytes).unwrap();
+            let (from, extras) = (run_file::Provenance::default(), run_file::Extras::default());
+            run_file::write_with(scene, &recording, &from, extras, &mut bytes).unwrap();
             bytes
         };
         let bytes = written(&kind.scene);

@@ -48,7 +48,7 @@ fn nothing([width, height]: [u32; 2]) -> Run {
 
 fn bytes(Run { scene, recording, provenance }: &Run) -> Vec<u8> {
     let mut bytes = Vec::new();
-    run_file::write(scene, recording, provenance, &mut bytes).unwrap();
+    run_file::write_with(scene, recording, provenance, run_file::Extras::default(), &mut bytes).unwrap();
     bytes
 }
 

@@ -89,7 +89,7 @@ pub(super) use error::hex;
 pub use error::{RunFileError, VERSION};
 pub use lit_samples::{LitSamples, MAX_SAMPLES, Spool};
 pub use read::{RunFile, read};
-pub use write::{Extras, FinalPicture, write, write_with};
+pub use write::{Extras, FinalPicture, write_with};
 
 /// The contents of a run file.
 #[derive(Clone, Debug)]
