@@ -49,16 +49,6 @@ pub fn array<'de, D: Deserializer<'de>, const N: usize>(deserializer: D) -> Resu
     deserializer.deserialize_seq(Numbers)
 }
 
-/// Reads a list of exactly `N` numbers for a key that may be left out.
-///
-/// # Errors
-/// If it is another value.
-pub fn optional_array<'de, D: Deserializer<'de>, const N: usize>(
-    deserializer: D,
-) -> Result<Option<[f64; N]>, D::Error> {
-    array(deserializer).map(Some)
-}
-
 /// A list of exactly `N` numbers.
 #[derive(Clone, Copy, Debug, PartialEq, Deserialize)]
 #[serde(transparent)]

@@ -1,5 +1,5 @@
-//! Ray traces spheres with WGSL compute shaders, on any device and without a display, and checks that each pixel
-//! is one that a conforming device may have made.
+//! Ray traces spheres with WGSL compute shaders, without a display, and checks whether each pixel is one that a
+//! conforming device may have made.
 //!
 //! | I want to … | start here |
 //! |---|---|
@@ -9,7 +9,7 @@
 //! | colour spheres by numbers, with a legend, or read a scene file | the package `pinhole-figure` |
 //! | draw spheres inside the frame of my wgpu program | [`gpu::Renderer`], [below](#embed-it) |
 //! | know whether a GPU and its driver compute what they should | [`gpu::Headless::verify`], [below](#verify-it) |
-//! | render without any driver | [`cpu::render`], the reference: the same pictures, slowly; with a [`cpu::SearchStructure`], not so slowly |
+//! | render without any driver | [`cpu::render`], the reference: the same pictures but for rounding, slowly; with a [`cpu::SearchStructure`], not so slowly |
 //!
 //! A picture needs three things. A [`Scene`] holds spheres that have been checked. A [`View`] joins a camera, which
 //! says which ray belongs to a location in the picture, with a [`Film`], which is the picture's size.

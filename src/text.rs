@@ -7,20 +7,20 @@ pub fn one_line(text: &str) -> String {
     fitted(text, 200)
 }
 
-/// The same with an ellipsis after 40 characters, for a word within a sentence.
+/// One line with an ellipsis after 40 characters, for a word within a sentence.
 #[must_use]
 pub fn shortened(text: &str) -> String {
     fitted(text, 40)
 }
 
-/// The same for a whole line of the program, which may quote several texts and paths: at most 10,000 characters.
+/// One line for a whole line of the program, which may quote several texts and paths: at most 10,000 characters.
 #[must_use]
 pub fn whole_line(text: &str) -> String {
     fitted(text, 10_000)
 }
 
-/// Whether a character can change how a terminal or a browser shows the text around it: a control character of the
-/// sets C0 and C1, or one that changes the direction of text.
+/// Returns true if a character can change how a terminal or a browser shows the text around it: a control character of
+/// the sets C0 and C1, or one that changes the direction of text.
 #[must_use]
 pub fn is_control(c: char) -> bool {
     c.is_control()

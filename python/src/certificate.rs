@@ -29,7 +29,7 @@ impl CertificateData {
         self.certificate.outcome().name()
     }
 
-    /// Whether every pixel is proved to be one that a conforming device may have made.
+    /// Whether the outcome is proved: every pixel is legal, and at most 1 % have other legal answers.
     #[getter]
     fn is_legal(&self) -> bool {
         self.certificate.is_legal()

@@ -88,7 +88,7 @@ impl Accel {
         (self.min, self.max)
     }
 
-    /// Whether spheres with the same centre may be in different bricks.
+    /// Returns true if spheres with the same centre may be in different bricks.
     #[must_use]
     pub fn may_split_duplicates(&self) -> bool {
         self.may_split_duplicates
@@ -166,7 +166,7 @@ impl Bricks<'_> {
         self.plan.structure
     }
 
-    /// Whether spheres with the same centre may be in different bricks.
+    /// Returns true if spheres with the same centre may be in different bricks.
     #[must_use]
     pub fn may_split_duplicates(&self) -> bool {
         self.may_split_duplicates

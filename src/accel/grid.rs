@@ -113,7 +113,7 @@ impl Grid {
         })
     }
 
-    /// Whether a walk has to handle grids inside cells, or to skip empty cells.
+    /// Returns true if a walk has to handle grids inside cells, or to skip empty cells.
     #[must_use]
     pub fn is_nested(&self) -> bool {
         self.cells[..self.first_level_len()]

@@ -1,7 +1,7 @@
 //! Acceleration structures, built from the spheres in the scene's frame and stored as plain data.
 //!
-//! The kernels in `shaders/` walk this data in f32. Their sphere test gives every structure the same answer as testing
-//! all spheres: the same distance and id, to the bit. On the CPU, `grid_visit` and `wide_tree_visit` walk it in f64,
+//! The kernels in `shaders/` walk this data in f32. On devices that compute their sphere test alike in all
+//! kernels, every structure gives the answer of testing all spheres: its distance and id, to the bit. On the CPU, `grid_visit` and `wide_tree_visit` walk it in f64,
 //! and the caller supplies the sphere test.
 
 pub(crate) mod ball;

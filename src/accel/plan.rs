@@ -108,14 +108,14 @@ impl AccelPlan {
         plan
     }
 
-    /// The same plan with another margin of the boxes for ray queries, as a multiple of [`SceneStatistics::margin`].
+    /// The plan with another margin of the boxes for ray queries, as a multiple of [`SceneStatistics::margin`].
     /// Below 1, spheres may be missed. Use it to measure when a driver begins to miss some.
     #[must_use]
     pub fn with_box_margin(self, box_margin: f32) -> Self {
         Self { box_margin, ..self }
     }
 
-    /// The same plan for spheres that are a part of a scene with the given box, in the scene's frame. Rays start in
+    /// The plan for spheres that are a part of a scene with the given box, in the scene's frame. Rays start in
     /// that box, and the margin is that of the whole scene.
     #[must_use]
     pub fn within(mut self, (min, max): (Vec3, Vec3)) -> Self {

@@ -217,7 +217,7 @@ pub(crate) struct Margins {
 }
 
 impl Margins {
-    /// The same margin for all spheres.
+    /// One margin for all spheres.
     pub(super) const fn one(margin: f32) -> Self {
         Self { all: margin, crowd: None }
     }

@@ -59,7 +59,7 @@ impl Structure {
         all => all,
     };
 
-    /// The same structure, but with nested grids if it is a grid and `is_nested` is true.
+    /// The structure, with nested grids if it is a grid and `is_nested` is true.
     pub(crate) const fn with_nested(self, is_nested: bool) -> Self {
         match self {
             Self::Grid if is_nested => Self::NestedGrid,

@@ -72,8 +72,8 @@ impl Film {
 
     /// A rectangle of this film, of `size` (width and height) pixels, whose first pixel is at `origin` (column and row).
     ///
-    /// A picture on the part has the same pixels as a picture on the whole film, to the bit. So several devices or
-    /// machines can render one picture. [`Image::put`](crate::image::Image::put) joins the parts. Steps that read
+    /// A picture on the part has the same pixels as a picture on the whole film, to the bit, on one kind of device. So
+    /// several machines can render one picture. [`Image::put`](crate::image::Image::put) joins the parts. Steps that read
     /// neighbours of pixels need the whole picture, so render parts with
     /// [`RenderSettings::unfinished`](crate::render::RenderSettings::unfinished).
     ///
@@ -100,7 +100,7 @@ impl Film {
         Self { width, height, origin: [0; 2], ..*self }
     }
 
-    /// Whether this is a whole film and not a part of a larger one.
+    /// Returns true if this is a whole film and not a part of a larger one.
     #[must_use]
     pub fn is_whole(&self) -> bool {
         self.whole == [self.width, self.height]
@@ -117,7 +117,7 @@ impl Film {
         [self.origin[0] + column, self.origin[1] + row]
     }
 
-    /// The same film with another direction of y.
+    /// The film with another direction of y.
     #[must_use]
     pub fn with_y_axis(self, y_axis: YAxis) -> Self {
         Self { y_axis, ..self }

@@ -12,7 +12,7 @@ use std::f64::consts::PI;
 #[serde(rename_all = "kebab-case")]
 #[non_exhaustive]
 pub enum PixelFilter {
-    /// The same weight everywhere within 0.5, which is the pixel itself.
+    /// One weight everywhere within 0.5, which is the pixel itself.
     Box,
     /// A normal distribution with a standard deviation of 0.5, cut off at a radius of 1.5 and lowered by its value
     /// there, so that it ends at zero. This is the default of pbrt-v4.

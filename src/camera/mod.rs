@@ -58,12 +58,12 @@ pub trait Camera: sealed::Sealed + std::fmt::Debug + Send + Sync {
         self.ray_in_world(location)
     }
 
-    /// Whether [`Camera::ray_through_lens`] depends on the point of the lens.
+    /// Returns true if [`Camera::ray_through_lens`] depends on the point of the lens.
     fn has_lens(&self) -> bool {
         false
     }
 
-    /// Whether the camera has a ray at `location`. If not, the pixel is a miss, and the result of
+    /// Returns true if the camera has a ray at `location`. If not, the pixel is a miss, and the result of
     /// [`Camera::ray_in_world`] has no meaning.
     fn sees(&self, location: DVec2) -> bool {
         let _ = location;
@@ -153,9 +153,9 @@ macro_rules! define_kind {
 camera_table!(define_kind);
 
 impl CameraKind {
-    /// Whether straight lines stay straight in the picture, so that a box lies between the images of its corners. The
-    /// rays of such a camera may start on any plane along `forward` instead of at the camera; see `Camera` in
-    /// `shaders/scene/records.wgsl`.
+    /// Returns true if straight lines stay straight in the picture, so that a box lies between the images of its
+    /// corners. The rays of such a camera may start on any plane along `forward` instead of at the camera; see `Camera`
+    /// in `shaders/scene/records.wgsl`.
     #[must_use]
     pub const fn is_linear(self) -> bool {
         matches!(self, Self::Pinhole | Self::Orthographic | Self::ThinLens)

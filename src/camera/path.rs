@@ -127,7 +127,7 @@ impl CameraPath {
         self.clock
     }
 
-    /// Whether the camera starts and ends at rest.
+    /// Returns true if the camera starts and ends at rest.
     #[must_use]
     pub fn eases(&self) -> bool {
         self.eases

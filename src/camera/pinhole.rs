@@ -107,7 +107,7 @@ impl PinholeCamera {
         Ok(Self { shift, ..camera })
     }
 
-    /// The same camera with a narrower field of view, which enlarges the picture about its middle.
+    /// The camera with a narrower field of view, which enlarges the picture about its middle.
     pub(super) fn zoomed(self, zoom: Option<f64>) -> Result<Self, CameraError> {
         let Some(zoom) = zoom else { return Ok(self) };
         let half_extent = checked_half_extent(self.half_extent / checked_length("`zoom`", zoom)?)?;

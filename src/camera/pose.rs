@@ -98,7 +98,7 @@ impl Pose {
         Ok(Self { origin: eye, basis })
     }
 
-    /// The same orientation, at a position relative to the centre of a box.
+    /// The orientation, at a position relative to the centre of a box.
     pub(super) fn framing(self, bounds: &Bounds, offset: DVec3) -> Result<Self, CameraError> {
         let origin = bounds.center() + offset;
         checked_point("the eye", origin).map_err(|_| {
@@ -110,7 +110,7 @@ impl Pose {
         Ok(Self { origin, ..self })
     }
 
-    /// The same orientation, moved by a vector.
+    /// The pose, moved by a vector.
     pub(super) fn moved(self, by: DVec3) -> Result<Self, CameraError> {
         let origin = self.origin + by;
         checked_point("the eye", origin)?;

@@ -39,7 +39,7 @@ pub fn unit(bits: u32) -> f64 {
 }
 
 /// The bijective output function RXS-M-XS of the 32-bit PCG, after one step of its generator.
-fn pcg(x: u32) -> u32 {
+pub(crate) fn pcg(x: u32) -> u32 {
     let state = x.wrapping_mul(747_796_405).wrapping_add(2_891_336_453);
     let word = ((state >> ((state >> 28) + 4)) ^ state).wrapping_mul(277_803_737);
     (word >> 22) ^ word

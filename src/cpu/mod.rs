@@ -1,7 +1,7 @@
 //! The CPU reference: f64 code that is as simple as possible, so that readers can check it.
 //!
-//! GPU results are compared with it. Each ray tests every sphere, and only the scene, camera and film are shared with
-//! the GPU renderer. Clear code is preferred to fast code.
+//! GPU results are compared with it. Each ray tests every sphere. The scene, the camera, the film and, for light, the
+//! random numbers and a few tables are shared with the GPU renderer. Clear code is preferred to fast code.
 //!
 //! Machines without a GPU use the same code for large scenes. With a [`SearchStructure`], rays test only spheres that
 //! they may hit. The picture is the same, to the bit.

@@ -53,7 +53,7 @@ impl Bounds {
         self.max - self.min
     }
 
-    /// The same box with all sides moved outwards.
+    /// The box with all sides moved outwards.
     pub(crate) fn widened(self, by: f64) -> Self {
         Self { min: self.min - by, max: self.max + by }
     }

@@ -46,12 +46,12 @@ impl<'a> Subject<'a> {
         Self { origin, spheres, added: 0, bounds, free_sides: [0.0; 4], whole: None }
     }
 
-    /// The same spheres. The last `added` are framed but do not affect the style.
+    /// The subject whose last `added` spheres are framed but do not affect the style.
     pub(crate) fn with_added(self, added: usize) -> Self {
         Self { added, ..self }
     }
 
-    /// The same spheres, with the properties of the larger scene that reaches as far as they do.
+    /// The spheres with the properties of the larger scene that reaches as far as they do.
     pub(crate) fn with_whole(self, whole: WholeSubject) -> Self {
         Self { whole: Some(whole), ..self }
     }
@@ -64,7 +64,7 @@ impl<'a> Subject<'a> {
         }
     }
 
-    /// The same subject, which a camera frames beside free parts of the picture, such as that of a legend. The free
+    /// The subject, which a camera frames beside free parts of the picture, such as that of a legend. The free
     /// parts are on the sides of low x, high x, low y and high y of the film, as fractions of its width and height,
     /// each at most [`Subject::MOST_FREE`]. If the margin of the camera is larger, it is kept. Cameras whose pictures
     /// are round do not support free parts.

@@ -56,7 +56,7 @@ fn rank(device_type: DeviceType, low_power: bool) -> u32 {
 /// Returns the adapters to try, the best first: the one with the given name, or all if there is no name.
 ///
 /// # Errors
-/// The same as for [`index_of_choice`].
+/// As for [`index_of_choice`].
 pub async fn candidates(name: Option<&str>) -> Result<Vec<Adapter>, GpuError> {
     let mut adapters = adapters().await;
     let index = index_of_choice(&adapters, name)?;
@@ -69,7 +69,7 @@ pub async fn candidates(name: Option<&str>) -> Result<Vec<Adapter>, GpuError> {
 /// Returns the first of the [`candidates`].
 ///
 /// # Errors
-/// The same as for [`index_of_choice`].
+/// As for [`index_of_choice`].
 pub async fn choose(name: Option<&str>) -> Result<Adapter, GpuError> {
     candidates(name).await?.into_iter().next().ok_or(GpuError::NoAdapter)
 }

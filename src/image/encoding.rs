@@ -78,7 +78,7 @@ impl Encoding {
     /// The largest number of stops by which a picture can be made brighter or darker.
     pub const MAX_EXPOSURE: f32 = 32.0;
 
-    /// The same encoding, with light multiplied by 2 to the power of `stops`.
+    /// The encoding with light multiplied by 2 to the power of `stops`.
     ///
     /// # Errors
     /// Returns an error if `stops` is not within ± [`Encoding::MAX_EXPOSURE`].
@@ -121,7 +121,7 @@ impl Encoding {
         std::array::from_fn(|i| alpha * shown[i].clamp(0.0, 1.0) + behind[i])
     }
 
-    /// The same encoding with the number of pixels per inch for printing. It is written to PNG files and changes no
+    /// The encoding with the number of pixels per inch for printing. It is written to PNG files and changes no
     /// pixel.
     ///
     /// # Errors

@@ -60,7 +60,7 @@ impl Layer {
         }
     }
 
-    /// Whether values belong to the ray through a pixel's centre, even if other layers are means over samples.
+    /// Returns true if values belong to the ray through a pixel's centre, even if other layers are means over samples.
     #[must_use]
     pub const fn is_of_one_ray(self) -> bool {
         matches!(self, Self::Depth | Self::Normal | Self::Id | Self::Position)
@@ -138,13 +138,13 @@ impl LayerSet {
         set
     };
 
-    /// The same set with one more layer.
+    /// The set with one more layer.
     #[must_use]
     pub const fn with(self, layer: Layer) -> Self {
         Self { bits: self.bits | 1 << layer as u16 }
     }
 
-    /// Whether the layer is in the set.
+    /// Returns true if the layer is in the set.
     #[must_use]
     pub const fn contains(self, layer: Layer) -> bool {
         self.bits & 1 << layer as u16 != 0

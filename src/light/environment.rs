@@ -108,7 +108,7 @@ impl Environment {
         &self.columns
     }
 
-    /// Whether at least one texel is not black.
+    /// Returns true if at least one texel is not black.
     #[must_use]
     pub fn has_light(&self) -> bool {
         self.rows[self.height as usize] > 0.0

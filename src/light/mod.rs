@@ -148,7 +148,7 @@ pub struct Sky {
 /// The radiance of a sky.
 #[derive(Clone, Debug, PartialEq, serde::Serialize, serde::Deserialize)]
 pub enum SkyLight {
-    /// The same radiance in all directions. Black means no light.
+    /// One radiance in all directions. Black means no light.
     Constant(LinearRgb),
     /// A linear interpolation in the direction's height y.
     Gradient {

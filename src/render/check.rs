@@ -56,7 +56,7 @@ impl RenderSettings {
         self.check_with(scene.checked_appearance())
     }
 
-    /// The same checks as [`RenderSettings::check`], for the appearance of a scene.
+    /// The checks of [`RenderSettings::check`] for the appearance of a scene.
     pub(crate) fn check_with(&self, appearance: &SceneAppearance) -> Result<(), SettingsError> {
         self.check_is_used()?;
         if self.integrator.is_primary() {

@@ -35,7 +35,7 @@ impl Integrator {
         }
     }
 
-    /// Whether the integrator traces primary rays only, so that the picture has no lighting.
+    /// Returns true if the integrator traces primary rays only, so that the picture has no lighting.
     #[must_use]
     pub const fn is_primary(&self) -> bool {
         matches!(self, Self::Primary(_))

@@ -122,7 +122,7 @@ impl RenderSettings {
         Self { integrator: Integrator::Path(PathTracing::default()), ..Self::studio() }
     }
 
-    /// The same picture with several samples per pixel, which smooth its edges. A picture by primary rays becomes one
+    /// The picture with several samples per pixel, which smooth its edges. A picture by primary rays becomes one
     /// of the integrator `studio` with the same light: a light at the eye, or for [`Shading::Flat`] only ambient light.
     /// Other settings do not change.
     #[must_use]
@@ -179,14 +179,14 @@ impl RenderSettings {
         }
     }
 
-    /// The same settings with or without the removal of noise.
+    /// The settings with or without the removal of noise.
     #[must_use]
     pub fn with_denoise(&self, denoise: bool) -> Self {
         let sampling = Sampling { denoise, ..self.sampling };
         Self { sampling, ..self.clone() }
     }
 
-    /// The same settings without denoising and outlines, which read neighbours of pixels. Use them for parts of a film.
+    /// The settings without denoising and outlines, which read neighbours of pixels. Use them for parts of a film.
     /// After joining the parts, [`cpu::finish`](crate::cpu::finish) or `Headless::finish` completes the picture.
     #[must_use]
     pub fn unfinished(&self) -> Self {

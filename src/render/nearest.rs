@@ -57,7 +57,7 @@ impl NearestPicture {
         self.image
     }
 
-    /// The same picture with other ids. `ids` has one for each sphere of the rendered scene. They must ascend, because
+    /// The picture with other ids. `ids` has one for each sphere of the rendered scene. They must ascend, because
     /// at equal distances the sphere with the smallest index was found.
     #[must_use]
     pub fn with_ids(mut self, ids: &[u32]) -> Self {
@@ -88,9 +88,9 @@ impl NearestPicture {
         Ok(())
     }
 
-    /// Whether the rays of all pixels miss the spheres in a box, or hit something before it. Then a part with only
-    /// these spheres changes nothing. Always false for cameras whose rays start far from the scene, because kernels
-    /// round such rays by more than the margin of boxes.
+    /// Returns true if the rays of all pixels miss the spheres in a box, or hit something before it. Then a part with
+    /// only these spheres changes nothing. Always false for cameras whose rays start far from the scene, because
+    /// kernels round such rays by more than the margin of boxes.
     #[must_use]
     pub fn hides(&self, view: &View<'_>, scene: &Bounds, spheres: &Bounds) -> bool {
         let pixels = self.t.len();

@@ -79,13 +79,13 @@ impl Appearance {
         Self { colors, surfaces: vec![SurfaceProperties::default()], surface_indices: None }
     }
 
-    /// The same colours on spheres that all have the same surface properties.
+    /// The colours on spheres that all have the same surface properties.
     #[must_use]
     pub fn with_surface(self, surface: SurfaceProperties) -> Self {
         self.with(vec![surface], None)
     }
 
-    /// The same colours with several surface properties: a list of them, and for every sphere an index into the list.
+    /// The colours with several surface properties: a list of them, and for every sphere an index into the list.
     #[must_use]
     pub fn with_surfaces(self, surfaces: Vec<SurfaceProperties>, indices: Vec<u32>) -> Self {
         self.with(surfaces, Some(indices))

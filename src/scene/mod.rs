@@ -113,8 +113,8 @@ impl Scene {
     }
 
     /// Some spheres of a larger scene, in input order and in its frame. If pictures of parts by primary rays are merged
-    /// by [`NearestPicture`](crate::render::NearestPicture), the result is that of the whole, to the bit. Integrators
-    /// with light need all spheres.
+    /// by [`NearestPicture`](crate::render::NearestPicture), the result is that of the whole on the same device, to
+    /// the bit. Integrators with light need all spheres.
     ///
     /// # Errors
     /// Returns the same errors as [`Scene::from_parts`], and an error if a sphere is outside the whole scene.
@@ -144,7 +144,7 @@ impl Scene {
         Self { origin, spheres, appearance, bounds, added: 0, whole: None }
     }
 
-    /// The same spheres, all with the same surface properties.
+    /// The spheres, all with these surface properties.
     #[must_use]
     pub fn with_surface(mut self, surface: SurfaceProperties) -> Self {
         let appearance = Arc::unwrap_or_clone(self.appearance).into_inner().with_surface(surface);
@@ -152,7 +152,7 @@ impl Scene {
         self
     }
 
-    /// The same spheres. The last `count` of them were added to those of the data, such as the edges of a cell. They do
+    /// The scene whose last `count` spheres were added to those of the data, such as the edges of a cell. They do
     /// not affect choices based on the data, such as the mean radius and the flat axis.
     #[must_use]
     pub fn with_added(mut self, count: usize) -> Self {
@@ -279,7 +279,7 @@ impl Scene {
         self.spheres.len()
     }
 
-    /// Whether the scene has no spheres.
+    /// Returns true if the scene has no spheres.
     #[must_use]
     pub fn is_empty(&self) -> bool {
         self.spheres.is_empty()

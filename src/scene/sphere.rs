@@ -31,14 +31,14 @@ impl Sphere {
         Self { center, radius, color, surface: SurfaceProperties::default() }
     }
 
-    /// The same sphere with another material.
+    /// The sphere with another material.
     #[must_use]
     pub fn with_material(mut self, material: Material) -> Self {
         self.surface.material = material;
         self
     }
 
-    /// The same sphere with another opacity.
+    /// The sphere with another opacity.
     #[must_use]
     pub fn with_opacity(mut self, opacity: f32) -> Self {
         self.surface.opacity = opacity;

@@ -54,7 +54,7 @@ impl SphereArray {
         }
     }
 
-    /// Whether there are no spheres.
+    /// Returns true if there are no spheres.
     #[must_use]
     pub fn is_empty(&self) -> bool {
         self.len() == 0

@@ -44,7 +44,7 @@ impl Deviation {
         self.sum / self.count.max(1) as f64
     }
 
-    /// Whether results lie to one side by more than [`LARGEST_MEAN`], and by more than chance explains.
+    /// Returns true if results lie to one side by more than [`LARGEST_MEAN`], and by more than chance explains.
     #[must_use]
     pub fn is_biased(&self) -> bool {
         let (count, mean) = (self.count as f64, self.mean());

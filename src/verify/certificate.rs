@@ -248,8 +248,8 @@ impl Certificate {
         Outcome::of(is_violated, self.undecided() as u64, self.verdicts.len() as u64)
     }
 
-    /// Whether the outcome is [`Outcome::Proved`]: the uploaded data are correct, every pixel is legal, and almost all
-    /// pixels have no other legal answer.
+    /// Returns true if the outcome is [`Outcome::Proved`]: the uploaded data are correct, every pixel is legal, and
+    /// almost all pixels have no other legal answer.
     #[must_use]
     pub fn is_legal(&self) -> bool {
         self.outcome() == Outcome::Proved

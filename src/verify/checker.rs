@@ -134,6 +134,12 @@ struct ShadingRay {
     direction: [Interval; 3],
 }
 
+impl From<AnyRay> for ShadingRay {
+    fn from(AnyRay { line, slack, direction, .. }: AnyRay) -> Self {
+        Self { line, slack, direction }
+    }
+}
+
 /// The layers of a pixel.
 #[derive(PartialEq)]
 pub(super) struct Layers {
@@ -205,14 +211,14 @@ impl PixelCheck<'_> {
         let side = legal.of(id).and_then(|hit| hit.crossing_at(t.into()));
         let depth = side.map_or(0.0, |crossing| crossing.fraction(t.into()));
         let depths = legal_depth(ray.distance, t);
-        // If the shading ray was not recorded, it is only known to be within the slack of the traced ray.
-        let mut shading = ShadingRay { line, slack: entered.slack(), direction: entered.direction };
-        if let Some(ray) = shading_ray {
-            let line = Line::new(ray.origin, ray.direction);
-            check_ray(&camera_ray.entered(&self.model, line.direction), &ray)?;
-            let direction = ray.direction.map(exactly);
-            shading = ShadingRay { line, slack: Slack::default(), direction };
-        }
+        let shading = match shading_ray {
+            Some(ray) => {
+                let line = Line::new(ray.origin, ray.direction);
+                check_ray(&camera_ray.entered(&self.model, line.direction), &ray)?;
+                ShadingRay { line, slack: Slack::default(), direction: ray.direction.map(exactly) }
+            }
+            None => ShadingRay::from(camera_ray.any(&self.model)),
+        };
         let normal = self.check_hit(&layers, depths, id, &shading)?;
         if let Some(measured) = measured.filter(|_| verdict == Verdict::Decided) {
             for (what, found, legal) in entered.numbers(&ray) {
@@ -358,8 +364,7 @@ impl PixelCheck<'_> {
         {
             return Err(Mismatch::value("depth", depth, legal));
         }
-        let AnyRay { line, slack, direction, .. } = ray;
-        self.check_shading(layers, &ShadingRay { line, slack, direction }).map(|_| ())
+        self.check_shading(layers, &ray.into()).map(|_| ())
     }
 
     /// The legal depths of a sphere, if the ray certainly hits one particular side. These bounds are tighter, because

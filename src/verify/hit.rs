@@ -187,7 +187,7 @@ impl Slab<'_> {
     }
 }
 
-/// All legal answers to a ray: the answers that a device that conforms to WGSL may give, however it rounds.
+/// All legal answers to a ray. Every answer that a device that conforms to WGSL may give, however it rounds, is one.
 ///
 /// A hit is legal if its sphere is listed, and its distance is legal for this sphere and at most `limit`.
 #[derive(Clone, Debug, Default, PartialEq)]
@@ -245,7 +245,7 @@ impl LegalHits {
         self.spheres.iter().find(|hit| hit.id == id)
     }
 
-    /// Whether a hit of this sphere at this distance is legal.
+    /// Returns true if a hit of this sphere at this distance is legal.
     #[must_use]
     pub fn allows(&self, id: u32, t: f64) -> bool {
         t <= self.limit && self.of(id).is_some_and(|hit| hit.crossing_at(t).is_some())
@@ -293,8 +293,8 @@ impl LegalHits {
 
     /// Among spheres that are equal to the bit, keeps the one with the smallest id. Kernels find the same distance for
     /// equal spheres, to the bit, because they share one sphere test, and at equal distances the smaller id wins. This
-    /// is a guarantee of this crate: WGSL does not guarantee that two kernels, such as the kernels of two bricks,
-    /// compile the test in the same way.
+    /// is an assumption: WGSL does not guarantee that two kernels, such as the kernels of two bricks, compile the test
+    /// in the same way.
     fn drop_copies(&mut self) {
         if self.spheres.len() > 1 {
             self.spheres.sort_unstable_by_key(|hit| (hit.sphere, hit.id));

@@ -2,14 +2,14 @@
 //!
 //! The f32 arithmetic of a GPU is not exact, and WGSL gives it freedom: a result may be rounded to either neighbour,
 //! operations may be fused, and sums may be evaluated in any order. Devices therefore differ, and comparing pictures
-//! with a tolerance proves nothing. The checker instead starts from the device's exact inputs. With error bounds in
-//! f64, it computes the set of answers that a conforming implementation of the kernels may give: which spheres may be
+//! with a tolerance tells little. The checker instead starts from the device's exact inputs. With error bounds in
+//! f64, it computes a set that holds all answers that a conforming implementation of the kernels may give: which spheres may be
 //! the nearest and at which distances, whether a miss is possible, and which normals, depths and colours follow. These
 //! answers are *legal*. A pixel is *decided* if only one answer is legal, apart from distances within their bounds.
 //!
 //! Stages are judged separately, each from the device's recorded result of the previous stage, so that errors do not
-//! accumulate: the camera's ray, the nearest hit, and the shading. The checker shares no code with the twins of the
-//! kernels, and does not use the structure that found the spheres.
+//! accumulate: the camera's ray, the nearest hit, and the shading. The checker has kernels of its own, and does not use the
+//! structure that found the spheres. With the CPU reference it shares the scene, random numbers and tables of lights.
 //!
 //! The picture of [`Headless::render`](crate::gpu::Headless::render) comes from kernels that do not record rays. It is
 //! compared with the recording's picture, value by value. A pixel that differs is judged separately, against every ray
@@ -17,7 +17,7 @@
 //!
 //! In addition to WGSL's table of accuracies, the checker assumes that `fence` in `shaders/math/fence.wgsl` stops a
 //! compiler from optimising across it, and that the square root of zero is zero;
-//! [`Headless::self_test`](crate::gpu::Headless::self_test) checks both. It also assumes that among spheres that are
+//! [`Headless::self_test`](crate::gpu::Headless::self_test) tests both. It also assumes that among spheres that are
 //! equal to the bit the smallest id wins, even if they are in different bricks, because all kernels of a picture
 //! compute the same result from the same numbers.
 //!

@@ -74,7 +74,7 @@ impl Interval {
         self.high.abs().max(self.low.abs())
     }
 
-    /// Whether a number lies in the interval.
+    /// Returns true if a number lies in the interval.
     #[must_use]
     pub fn contains(&self, value: f64) -> bool {
         self.low <= value && value <= self.high

@@ -1,12 +1,11 @@
-//! Pinhole and orthographic cameras: their rays, pictures, constructors and errors.
+//! Pinhole and orthographic cameras: their rays, constructors and errors.
 
+use pinhole::Film;
 use pinhole::camera::film::YAxis;
 use pinhole::camera::{Camera, CameraError, OrthographicCamera, PinholeCamera, Pose};
 use pinhole::geometry::basis::OrthonormalBasis;
 use pinhole::geometry::bounds::Bounds;
 use pinhole::glam::{DVec2, DVec3};
-use pinhole::image::NO_ID;
-use pinhole::{Film, LayerSet, LinearRgb, RenderSettings, Scene, Sphere, View, cpu};
 
 const UP: DVec3 = DVec3::Y;
 
@@ -196,75 +195,6 @@ fn degenerate_lengths_and_angles_are_errors() {
     }
 }
 
-fn pose() -> Pose {
-    Pose::looking_at([0.0, 0.0, 10.0], [0.0; 3], [0.0, 1.0, 0.0]).unwrap()
-}
-
-fn perspective() -> PinholeCamera {
-    PinholeCamera::new(pose(), 1.0, [1.0, 1.0]).unwrap()
-}
-
-fn parallel() -> OrthographicCamera {
-    OrthographicCamera::new(pose(), [5.0, 5.0]).unwrap()
-}
-
-/// The number of pixels that a sphere at depth z covers.
-fn area(camera: &dyn Camera, z: f64) -> usize {
-    let scene = Scene::new(&[Sphere::new([0.0, 0.0, z], 1.0, LinearRgb::WHITE)]).unwrap();
-    let film = Film::new(200, 200).unwrap();
-    let image = cpu::render(&scene, &View::new(camera, film), &RenderSettings::default(), LayerSet::DATA).unwrap();
-    image.id().unwrap().iter().filter(|id| **id != NO_ID).count()
-}
-
-#[test]
-fn things_shrink_with_distance() {
-    let depths = [5.0, 0.0, -10.0, -50.0];
-    let areas = depths.map(|z| area(&perspective(), z));
-    assert!(areas.is_sorted_by(|near, far| near > far), "{areas:?}");
-    // At twice the distance, a quarter of the area, except for the size of pixels and the sphere's own depth.
-    let ratio = areas[1] as f64 / areas[2] as f64;
-    assert!((ratio - 4.0).abs() < 0.1, "{ratio}");
-
-    let areas = depths.map(|z| area(&parallel(), z));
-    assert!(areas.iter().all(|a| *a == areas[0] && *a > 0), "{areas:?}");
-}
-
-/// Picture points, from near to far, of a line through `start` along `direction`.
-fn line(camera: &dyn Camera, start: DVec3, direction: DVec3) -> Vec<DVec2> {
-    (0..40).map(|i| camera.location_of(start + direction * 1.5_f64.powi(i)).unwrap()).collect()
-}
-
-const STARTS: [[f64; 3]; 3] = [[0.0, 0.0, 0.0], [2.0, -1.0, 1.0], [-3.0, 2.0, -2.0]];
-
-#[test]
-fn parallel_lines_into_the_picture_meet_in_one_point() {
-    let direction = DVec3::new(0.3, -0.2, -1.0);
-    let vanishing_point = DVec2::new(0.3, -0.2);
-    for start in STARTS {
-        let end = *line(&perspective(), start.into(), direction).last().unwrap();
-        assert!((end - vanishing_point).length() < 1e-5, "{end}");
-    }
-    // In an orthographic view, they keep their distance.
-    let ends = STARTS.map(|start| *line(&parallel(), start.into(), direction).last().unwrap());
-    let expected = DVec2::new(2.0, -1.0) / 5.0;
-    assert!((ends[1] - ends[0] - expected).length() < 1e-5);
-}
-
-#[test]
-fn parallel_lines_along_the_view_plane_stay_parallel() {
-    let direction = DVec3::new(1.0, 0.4, 0.0);
-    let cameras: [&dyn Camera; 2] = [&perspective(), &parallel()];
-    for camera in cameras {
-        for start in STARTS {
-            let points = line(camera, start.into(), direction);
-            for pair in points.windows(2) {
-                let step = (pair[1] - pair[0]).normalize();
-                assert!(step.perp_dot(DVec2::new(1.0, 0.4).normalize()).abs() < 1e-9);
-            }
-        }
-    }
-}
-
 /// A vector of random direction, and of a length between 10⁻¹⁰⁰ and 10¹⁰⁰.
 fn random_vector(random: &mut fastrand::Rng) -> DVec3 {
     let direction = DVec3::from([0; 3].map(|_| random.f64() * 2.0 - 1.0));
@@ -311,12 +241,6 @@ fn nearly_parallel_vectors_make_a_basis_or_none() {
             None => assert!(tilt < 1e-8, "tilt {tilt:e}"),
         }
     }
-}
-
-#[test]
-fn a_known_basis() {
-    let basis = OrthonormalBasis::from_vectors([0.0, 0.0, 2.0], [0.0, 3.0, 5.0]).unwrap();
-    assert_eq!((basis.u(), basis.v(), basis.w()), (DVec3::X, DVec3::Y, DVec3::Z));
 }
 
 #[test]

@@ -124,27 +124,6 @@ fn arrays_make_the_scene_that_spheres_make() {
     }
 }
 
-/// f64 data ten million units away keeps its shape from the origin, to the last bit that f64 keeps there.
-#[test]
-fn arrays_far_from_the_origin_keep_their_shape() {
-    let mut random = fastrand::Rng::with_seed(16);
-    // Multiples of 2⁻²⁰, which f64 adds to 10⁷ exactly.
-    let step = f64::from(1 << 20).recip();
-    let mut coordinate = || (f64::from(random.i32(-5_000_000..5_000_000))) * step;
-    let near: Vec<[f64; 4]> = (0..1000).map(|_| [coordinate(), coordinate(), coordinate(), 0.1]).collect();
-    let far: Vec<_> = near.iter().map(|[x, y, z, r]| [x + 1e7, y - 1e7, z + 1e7, *r]).collect();
-    let near_scene = Scene::from_f64(&near, LinearRgb::WHITE).unwrap();
-    let far_scene = Scene::from_f64(&far, LinearRgb::WHITE).unwrap();
-    assert_eq!(near_scene.origin(), DVec3::ZERO);
-    for (near, far) in near_scene.spheres().iter().zip(far_scene.spheres()) {
-        for axis in 0..3 {
-            let at = [1e7, -1e7, 1e7][axis] - far_scene.origin()[axis];
-            let back = f64::from(far[axis]) - at;
-            assert!((back - f64::from(near[axis])).abs() < 1e-6, "{near:?} {far:?}");
-        }
-    }
-}
-
 #[test]
 fn the_first_bad_sphere_of_an_array_is_named_however_many_threads_look() {
     let mut random = fastrand::Rng::with_seed(17);
@@ -191,7 +170,8 @@ fn run_files_keep_every_kind() {
         let recording = made(&kind.scene, &camera(), film());
         let written = |scene: &Scene| {
             let mut bytes = Vec::new();
-            run_file::write(scene, &recording, &run_file::Provenance::default(), &mut bytes).unwrap();
+            let (from, extras) = (run_file::Provenance::default(), run_file::Extras::default());
+            run_file::write_with(scene, &recording, &from, extras, &mut bytes).unwrap();
             bytes
         };
         let bytes = written(&kind.scene);

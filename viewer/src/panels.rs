@@ -135,7 +135,7 @@ impl App {
         ui.add_space(2.0);
         ui.horizontal(|ui| {
             let copy = ui.button("Copy as command line");
-            if copy.on_hover_text("The command that renders this picture, to the byte (Ctrl+C)").clicked() {
+            if copy.on_hover_text("The command that renders this picture (Ctrl+C)").clicked() {
                 self.copy(&ui.ctx().clone());
             }
             ui.with_layout(Layout::right_to_left(Align::Center), |ui| {

@@ -34,6 +34,8 @@ pub(crate) enum JobCommand {
     /// List the units that have no part, for another try
     Status(StatusArgs),
     /// Put the parts together: the same bytes as `render` writes on one machine
+    ///
+    /// Parts are trusted: their digests find accidents, and nothing judges their pixels or the adapter that they name.
     Merge(MergeArgs),
 }
 

@@ -157,12 +157,6 @@ pub(crate) fn verdict(judged: &FinishedCertificate) -> Result<(), Failure> {
     }
 }
 
-/// The numbers of pixels that are exact, legal, wide and open.
-fn counts(judged: &FinishedCertificate) -> [u64; 4] {
-    [PixelVerdict::Exact, PixelVerdict::Legal, PixelVerdict::Wide, PixelVerdict::Open]
-        .map(|verdict| judged.count(verdict) as u64)
-}
-
 /// Makes the certificate of a picture.
 pub(crate) fn certificate(
     input: &Input,
@@ -178,7 +172,7 @@ pub(crate) fn certificate(
         scene: scene_digest(&input.scene),
         samples: written.digest(),
         outcome: judged.outcome(),
-        counts: counts(judged),
+        counts: [0, 1, 2, 3].map(|index| judged.count(PixelVerdict::ALL[index]) as u64),
     }
 }
 

@@ -62,7 +62,8 @@ pub(crate) struct CertifyArgs {
     /// The unit normal of each pixel
     #[arg(long, value_name = "NORMAL.npy")]
     normal: Option<PathBuf>,
-    /// The rays that the renderer was given, in world space [default: those of the camera]
+    /// The rays that the renderer was given, in world space. They are taken as they are: whoever gives them can prove
+    /// anything [default: those of the camera]
     #[arg(long, value_name = "RAYS.npz")]
     rays: Option<PathBuf>,
     /// The largest k that a pixel may need [default: 40, or 24 with --rays; 8 more with --normal]
@@ -354,7 +355,7 @@ impl Report {
     pub(crate) fn table(&self) -> String {
         let Scene { spheres, sha256 } = &self.scene;
         let Picture { width, height, camera, rays_off } = &self.picture;
-        let mut rays = camera.map_or("given rays".to_owned(), |camera| format!("{camera} camera"));
+        let mut rays = camera.map_or("given rays, taken as they are".to_owned(), |camera| format!("{camera} camera"));
         if let Some(RaysOff { camera, degrees, distance }) = rays_off {
             rays += &format!(", off those of the {camera} camera by up to {degrees:.2e} degrees and {distance:.2e}");
         }

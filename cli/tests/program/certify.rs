@@ -130,7 +130,8 @@ fn rays_may_be_given() {
     write(&folder, "few-depth.npy", "<f4", &depths);
     let run = folder.run("certify scene.toml --id few.npy --depth few-depth.npy --rays rays.npz").succeeded();
     let text = String::from_utf8(run.stdout).unwrap();
-    let words = "\npicture: 40x30, given rays, off those of the pinhole camera by up to 2.86e1 degrees and ";
+    let words =
+        "\npicture: 40x30, given rays, taken as they are, off those of the pinhole camera by up to 2.86e1 degrees and ";
     assert!(text.contains(words) && text.contains(" of 24\n"), "{text}");
     let run = folder.run("certify scene.toml --id few.npy --rays rays.npz --size 20x15").succeeded();
     assert!(run.stderr.contains("has another size than the rays"), "{run:?}");

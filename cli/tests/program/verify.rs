@@ -48,7 +48,7 @@ fn nothing([width, height]: [u32; 2]) -> Run {
 
 fn bytes(Run { scene, recording, provenance }: &Run) -> Vec<u8> {
     let mut bytes = Vec::new();
-    run_file::write(scene, recording, provenance, &mut bytes).unwrap();
+    run_file::write_with(scene, recording, provenance, run_file::Extras::default(), &mut bytes).unwrap();
     bytes
 }
 
@@ -73,7 +73,7 @@ fn a_replay_needs_no_adapter() {
     assert_eq!((run.code, run.stderr.as_str()), (0, ""));
     let table = String::from_utf8(run.stdout).unwrap();
     for line in [
-        "adapter: By </script><i>hand</i> & \\u{1b}[31m (, ), driver:",
+        "adapter: By </script><i>hand</i> & \\u{1b}[31m (, ), driver: (hearsay)",
         "scene: 0 spheres, 0 bytes, sha256 e3b0c44298fc1c149afbf4c8996fb92427ae41e4649b934ca495991b7852b855",
         "picture: 3x2, orthographic camera",
         "structure: list",
@@ -86,6 +86,7 @@ fn a_replay_needs_no_adapter() {
 
     let json: serde_json::Value = serde_json::from_slice(&folder.read("a.json")).unwrap();
     assert_eq!(json["version"], "0.1.0");
+    assert_eq!(json["hearsay"][0], "adapter");
     assert_eq!(json["adapter"]["name"], "By </script><i>hand</i> & \u{1b}[31m");
     assert_eq!(json["scene"]["spheres"], 0);
     assert_eq!(json["picture"]["width"], 3);

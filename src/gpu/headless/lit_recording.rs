@@ -5,6 +5,7 @@ use std::cell::Cell;
 
 use crate::camera::View;
 use crate::camera::film::Film;
+use crate::camera::sampling::pcg;
 use crate::gpu::error::{GpuError, check_whole};
 use crate::gpu::headless::Headless;
 use crate::gpu::headless::lit_flow::{Flow, LitWork};
@@ -187,13 +188,6 @@ impl LitPart {
         };
         Some(Tile { origin, size, in_target: [0, 0] })
     }
-}
-
-/// The hash function PCG of one round (M. Jarzynski and M. Olano, "Hash Functions for GPU Rendering", JCGT 9(3), 2020).
-fn pcg(input: u32) -> u32 {
-    let state = input.wrapping_mul(747_796_405).wrapping_add(2_891_336_453);
-    let word = ((state >> ((state >> 28) + 4)) ^ state).wrapping_mul(277_803_737);
-    (word >> 22) ^ word
 }
 
 /// Collects the numbers that the device is given for a tile.

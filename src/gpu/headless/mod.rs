@@ -212,7 +212,7 @@ impl Headless {
     /// submission, and decides how the render continues.
     ///
     /// # Errors
-    /// The same as for [`Headless::render`]; [`GpuError::Stopped`] if `watch` stops the render;
+    /// As for [`Headless::render`]; [`GpuError::Stopped`] if `watch` stops the render;
     /// [`GpuError::NoOccluders`] if the settings are those of a studio, some spheres are not opaque, and the scene was
     /// uploaded without the structure of the spheres that cast shadows.
     pub async fn render_uploaded(

@@ -38,7 +38,7 @@ impl Headless {
     /// it is on the device, and dropped. Bricks that the picture does not show are not built.
     ///
     /// # Errors
-    /// The same as for [`Headless::upload_planned`] and [`Headless::render_uploaded`].
+    /// As for [`Headless::upload_planned`] and [`Headless::render_uploaded`].
     pub async fn render_planned(
         &self,
         request: &PictureRequest<'_>,
@@ -200,7 +200,7 @@ impl Headless {
     /// picture is rendered in tiles, for each of which the bricks are built again.
     ///
     /// # Errors
-    /// The same as for [`Headless::render_planned`]; [`GpuError::NotPrimary`] for settings with light.
+    /// As for [`Headless::render_planned`]; [`GpuError::NotPrimary`] for settings with light.
     pub async fn render_nearest(
         &self,
         request: &PictureRequest<'_>,

@@ -61,7 +61,7 @@ impl Headless {
     /// [`Checker::certify`](crate::verify::Checker::certify) judges the device.
     ///
     /// # Errors
-    /// The same as for [`Headless::render_uploaded`]; [`GpuError::NotPrimary`] if the settings are those of a lit
+    /// As for [`Headless::render_uploaded`]; [`GpuError::NotPrimary`] if the settings are those of a lit
     /// picture. [`Headless::record_lit`] records such pictures.
     pub async fn record(
         &self,
@@ -100,7 +100,7 @@ impl Headless {
     /// [`Headless::render_uploaded`], whose kernels keep no rays, to compare both pictures in [`Recording::rendered`].
     ///
     /// # Errors
-    /// The same as for [`Headless::record`].
+    /// As for [`Headless::record`].
     pub async fn record_and_render(
         &self,
         scene: &SceneBuffers,

@@ -23,7 +23,7 @@ thread_local! {
     static MAY_BLOCK: Cell<bool> = const { Cell::new(false) };
 }
 
-/// Whether this thread is in a call of wgpu whose panics are caught and become errors.
+/// Returns true if this thread is in a call of wgpu whose panics are caught and become errors.
 ///
 /// Wgpu panics when a device is lost while the library waits for it; the library then returns [`GpuError::DeviceLost`].
 /// A program whose panic hook prints nothing while this is true reports the loss only once.

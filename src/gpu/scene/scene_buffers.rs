@@ -72,7 +72,7 @@ impl SceneBuffers {
     /// The copy is queued and precedes everything that is submitted later.
     ///
     /// # Errors
-    /// The same as for [`SceneBuffers::with_accel`].
+    /// As for [`SceneBuffers::with_accel`].
     pub async fn new(renderer: &Renderer, device: &Device, queue: &Queue, scene: &Scene) -> Result<Self, GpuError> {
         let plan = plan_of(device, scene);
         let bricks = BrickSource::from(plan.bricks(scene.spheres()));
@@ -102,7 +102,7 @@ impl SceneBuffers {
     /// copies a second structure, of the spheres that do. Studios of such scenes need it.
     ///
     /// # Errors
-    /// The same as for [`SceneBuffers::with_accel`].
+    /// As for [`SceneBuffers::with_accel`].
     pub async fn for_studio(
         renderer: &Renderer,
         device: &Device,

@@ -174,21 +174,6 @@ impl EnteredRay {
         let error = distance_error + PAD * U * (distance.abs() + distance_error + enter.high) + FLUSH;
         Interval { low: distance + enter.low - error, high: distance + enter.high + error }
     }
-
-    /// Maximum difference of another kernel's ray from this one.
-    pub(crate) fn slack(&self) -> Slack {
-        let turned = self.exact.direction_error.length();
-        let moved = self.exact.origin_error.length();
-        let rounded = DVec3::from([0, 1, 2].map(|axis| self.origin_error(axis))).length();
-        Slack {
-            // Two rays differ by twice the error of one.
-            across: 2.0 * (moved + rounded + self.enter.high * turned),
-            // The other ray may enter the box at another distance. But the surface of the box is outside all spheres,
-            // so only the decision on which side of a sphere the ray starts depends on this.
-            along: self.enter.high - self.enter.low + 2.0 * moved,
-            direction: 2.0 * turned,
-        }
-    }
 }
 
 /// The exact ray of a pixel, starting where a device's ray may first enter the scene's box, and bounds of the

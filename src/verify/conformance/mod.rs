@@ -51,7 +51,7 @@
 //!
 //! l = c − o, b = l·d, f = l − b d, q = r² − f·f, h = √q, t = b − h or (l·l − r²)/(b + h),
 //!
-//! needs k ≤ 9 for ids, k ≤ 21 with depths, and k ≤ 27 with normals. Let L = |l| ≥ r (from inside, the same holds with
+//! needs, to first order, k ≤ 9 for ids, k ≤ 21 with depths, and k ≤ 27 with normals. Let L = |l| ≥ r (from inside, the same holds with
 //! r in place of L), and let ε be the error of one rounding. Terms in ε² are left out.
 //!
 //! 1. The difference l is off by ε L: a move by 1, in units of ε L.
@@ -85,7 +85,8 @@
 //! The quadratic formula of textbooks does not meet these conditions: its b² − 4ac subtracts numbers of the size L²,
 //! which loses ε L² from r², so that a small sphere far away is moved by L/r times as much.
 //!
-//! In practice, so many roundings never all add up, and honest renderers need k below 6 (`docs/explain/how-verify-decides.md`).
+//! In practice, so many roundings seldom all add up: Embree and Tachyon needed k below 6
+//! (`docs/explain/how-verify-decides.md`).
 //!
 //! ```
 //! use pinhole::camera::{PinholeCamera, Pose};

@@ -260,8 +260,8 @@ impl LitCertificate {
         used.unwrap_or(Outcome::of(is_violated, 0, 0))
     }
 
-    /// Whether the outcome is [`Outcome::Proved`]: the uploaded data are correct, every stage is legal, and almost
-    /// nothing is undecided.
+    /// Returns true if the outcome is [`Outcome::Proved`]: the uploaded data are correct, every stage is legal, and
+    /// almost nothing is undecided.
     #[must_use]
     pub fn is_legal(&self) -> bool {
         self.outcome() == Outcome::Proved

@@ -39,6 +39,14 @@ fn is_color(found: [f32; 3], asked: LinearRgb) -> bool {
     are_near(found, asked.to_array().map(f64::from))
 }
 
+/// Compares a point in the scene's frame with a point in world space.
+fn is_point(found: [f32; 3], asked: DVec3, scene: &Scene) -> bool {
+    let exact = asked - scene.origin();
+    // The second term is the rounding error of f64 if large numbers cancel.
+    let error = 2.0 * U * exact.abs() + 4.0 * f64::EPSILON * (asked.abs() + scene.origin().abs()) + FLUSH;
+    (wide(found) - exact).abs().cmple(error).all()
+}
+
 fn check_lighting(scene: &Scene, inputs: &LitInputs) -> Result<(), UploadError> {
     let LitInputs { settings, lighting, .. } = inputs;
     match &settings.integrator {
@@ -58,14 +66,10 @@ fn check_lighting(scene: &Scene, inputs: &LitInputs) -> Result<(), UploadError> 
         | flags(settings.ground.is_some_and(|ground| ground.is_shadow_catcher), flag::CATCHER)
         | flags(settings.studio_parameters().is_some_and(|studio| studio.shadows), flag::SHADOWS);
     let is_ground = settings.ground.as_ref().is_none_or(|ground| {
-        let point = (ground.point - scene.origin()).to_array();
         let normal = unit(ground.normal).unwrap_or_default().to_array();
-        let moved = (ground.point.abs() + scene.origin().abs()) * f64::EPSILON * 4.0;
-        let is_point = (0..3).all(|axis| {
-            let off = f64::from(lighting.ground_point[axis]) - point[axis];
-            off.abs() <= 2.0 * U * point[axis].abs() + moved[axis] + FLUSH
-        });
-        is_point && are_near(lighting.ground_normal, normal) && is_color(lighting.ground_color, ground.color)
+        is_point(lighting.ground_point, ground.point, scene)
+            && are_near(lighting.ground_normal, normal)
+            && is_color(lighting.ground_color, ground.color)
     });
     let filter = settings.sampling.filter.offset_table();
     let all = [
@@ -219,14 +223,7 @@ fn check_lights(tables: &Tables<'_>, scene: &Scene, inputs: &LitInputs) -> Resul
         let size = tables.numbers(3 * index + 1)[3];
         let is_kind = tables.words(3 * index)[3] == codes::of_light(&light);
         let near = |color: LinearRgb| is_color(power, color);
-        // The rounding error of f64 if large numbers cancel.
-        let is_at = |point: DVec3| {
-            let (exact, moved) = (point - scene.origin(), point.abs() + scene.origin().abs());
-            (0..3).all(|axis| {
-                let off = f64::from(position[axis]) - exact[axis];
-                off.abs() <= 2e-7 * exact[axis].abs() + 1e-15 * moved[axis] + 1e-37
-            })
-        };
+        let is_at = |point: DVec3| is_point(position, point, scene);
         let (is_right, is_lamp) = match light {
             LightKind::Head { strength } => (is_kind && near(strength), false),
             LightKind::Directional { toward, strength, angular_radius } => {

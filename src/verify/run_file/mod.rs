@@ -67,7 +67,8 @@
 //! lights and sky. The same run gives the same file, to the byte.
 //!
 //! Input from the host is validated like scenes, films and cameras. The results of the device are kept as they are,
-//! even if they are wrong, because the checker judges them.
+//! even if they are wrong, because the checker judges them. Digests are no signatures: whoever writes a file can write
+//! any adapter, driver and command, so these are hearsay.
 
 mod container;
 mod error;
@@ -88,7 +89,7 @@ pub(super) use error::hex;
 pub use error::{RunFileError, VERSION};
 pub use lit_samples::{LitSamples, MAX_SAMPLES, Spool};
 pub use read::{RunFile, read};
-pub use write::{Extras, FinalPicture, write, write_with};
+pub use write::{Extras, FinalPicture, write_with};
 
 /// The contents of a run file.
 #[derive(Clone, Debug)]
@@ -101,7 +102,7 @@ pub struct Run {
     pub provenance: Provenance,
 }
 
-/// The origin of a recording, for human readers. It does not affect the verdict.
+/// The origin of a recording, for human readers. It does not affect the verdict, and is hearsay in a file from others.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
 pub struct Provenance {
     /// Version of this crate.

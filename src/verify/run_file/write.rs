@@ -38,20 +38,12 @@ pub struct FinalPicture {
 }
 
 /// Writes a run file in small pieces: 98 bytes for each pixel, 130 if a different picture was rendered, and 16 to 24
-/// for each sphere.
+/// for each sphere. Each sample of light has 240 bytes for each pixel of its rectangle. Each surface adds 164 bytes, or in
+/// studios 160 and 24 for each 32 lights or directions.
 ///
 /// # Errors
-/// Returns an error if writing fails, or if the recording has another size than its film or lacks a layer.
-pub fn write(scene: &Scene, recording: &Recording, provenance: &Provenance, out: &mut dyn Write) -> io::Result<()> {
-    write_with(scene, recording, provenance, Extras::default(), out)
-}
-
-/// Writes a run file like [`write()`], and adds the light of the picture. Each sample has 240 bytes for each pixel of
-/// its rectangle. Each surface adds 164 bytes, or in studios 160 and 24 for each 32 lights or directions.
-///
-/// # Errors
-/// The same as for [`write()`]; also if the samples have another camera or film than the recording,
-/// or the noisy picture lacks a layer.
+/// Returns an error if writing fails, if the recording has another size than its film or lacks a layer, if the samples
+/// have another camera or film than the recording, or if the noisy picture lacks a layer.
 pub fn write_with(
     scene: &Scene,
     recording: &Recording,

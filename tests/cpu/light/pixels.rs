@@ -61,18 +61,6 @@ fn layers_are_means_of_samples() {
     assert_eq!(shot.render(&lighting).variance().unwrap(), [0.0; 144]);
 }
 
-#[test]
-fn another_seed_gives_other_samples() {
-    let shot = Shot::new(&[white([0.0; 3], 1.0)], [0.0; 3], 1.2, 4);
-    let lighting = furnace(3);
-    let mut other = lighting.clone();
-    other.sampling.seed += 1;
-    assert_ne!(
-        (0..16).map(|s| shot.picture(&lighting).sample([0, 0], s).alpha).collect::<Vec<_>>(),
-        (0..16).map(|s| shot.picture(&other).sample([0, 0], s).alpha).collect::<Vec<_>>(),
-    );
-}
-
 /// The fraction of a pixel beside an edge that a sphere as large as a plane covers.
 #[test]
 fn filters_blur_edges_as_wide_as_they_are() {

@@ -64,13 +64,13 @@ fn not_of_recordings() -> impl Iterator<Item = Id> {
 pub(crate) const AFTER_HELP: &str = "The check covers the data on the device and every ray, hit, depth, normal and \
     color. It computes in f64, with a bound for every rounding that WGSL leaves open. Where several answers are legal, the device must have \
     given one of them. The CPU reference never replaces an adapter here.\n\n\
-    Exit codes: 0 every pixel is as a conforming device may have made it; 1 the job failed, or there is no adapter, \
+    Exit codes: 0 no violation was found, and less is undecided than for 4; 1 the job failed, or there is no adapter, \
     or RUN is damaged; 2 wrong usage; 3 the picture is not legal; 4 no violation was found, but more than 1 % of the \
     pixels have several legal answers, or of the stages of light paths or the denoised pixels have bounds so wide that \
     they say little, or more than 1 % of the pixels that `render` gives differ from what exact arithmetic gives and are not \
     known to be legal.\n\n\
-    JSON: `version`, `adapter` (name, backend, device_type, driver, driver_info, limits), `scene` (spheres, sha256), \
-    `picture` (width, height, camera, y_axis, shading, structure), `counts` (decided, silhouette, tie, violation), \
+    JSON: `version`, `adapter` (name, backend, device_type, driver, driver_info, limits), `hearsay` (the keys that \
+    RUN says of itself, which nothing proves: whoever writes it can write any names), `scene` (spheres, sha256), `picture` (width, height, camera, y_axis, shading, structure), `counts` (decided, silhouette, tie, violation), \
     `decided_fraction`, `worst_depth` and `worst_normal` (as fractions of their bounds), `upload` (null, or what is \
     wrong), `violations` (the first hundred: pixel, stage, message), `open` (the first three ties and the first three silhouettes: \
     pixel, verdict, message), `paths` (only with the integrator `path`: paths, \

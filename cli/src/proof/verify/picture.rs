@@ -36,6 +36,8 @@ struct Report<'a> {
     width: u32,
     height: u32,
     adapter: &'a str,
+    /// The keys that the certificate says and nothing proves.
+    hearsay: [&'static str; 1],
     settings: &'a [[String; 2]],
     exact: usize,
     legal: usize,
@@ -94,6 +96,7 @@ pub(crate) fn run(args: &VerifyArgs, path: &Path, scene: &Path) -> Result<(), Fa
             width,
             height,
             adapter: &one_line(&certificate.adapter),
+            hearsay: ["adapter"],
             settings: &certificate.settings,
             exact,
             legal,

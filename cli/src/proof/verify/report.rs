@@ -22,6 +22,8 @@ use pinhole::verify::{
 pub(crate) struct Report<'a> {
     pub(crate) version: String,
     pub(crate) adapter: Adapter<'a>,
+    /// The keys whose values a run file says of itself, so that nothing proves them.
+    hearsay: [&'static str; 4],
     pub(crate) scene: Scene,
     pub(crate) picture: Picture,
     pub(crate) counts: BTreeMap<&'static str, usize>,
@@ -92,6 +94,7 @@ impl<'a> Report<'a> {
         Self {
             version: one_line(&provenance.version),
             adapter: Adapter { adapter: AdapterReport::of_run(provenance), limits: &provenance.limits },
+            hearsay: ["adapter", "command", "picture.structure", "version"],
             scene: Scene { spheres: scene.len(), sha256: scene_sha256(scene) },
             picture: Picture {
                 width: recording.film.width(),
@@ -178,7 +181,7 @@ impl<'a> Report<'a> {
         let denoiser = self.denoiser.as_ref().map_or(String::new(), DenoiserReport::line);
         let rendered = self.rendered.as_ref().map_or(String::new(), RenderedReport::line);
         format!(
-            "adapter: {adapter}\nscene: {spheres} spheres, {} bytes, sha256 {sha256}\n\
+            "adapter: {adapter} (hearsay)\nscene: {spheres} spheres, {} bytes, sha256 {sha256}\n\
              picture: {width}x{height}, {camera} camera\n\
              structure: {structure}\n{}\n{light}{denoiser}{rendered}{}\n",
             16 * spheres,

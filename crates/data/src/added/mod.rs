@@ -29,7 +29,7 @@ pub struct Additions {
 }
 
 impl Additions {
-    /// Whether nothing is added.
+    /// Returns true if nothing is added.
     #[must_use]
     pub fn is_empty(&self) -> bool {
         self.cell.is_none() && self.bonds.is_none()

@@ -34,7 +34,7 @@ impl AddedSpheres {
         self.spheres.len()
     }
 
-    /// Whether no spheres were added.
+    /// Returns true if no spheres were added.
     #[must_use]
     pub fn is_empty(&self) -> bool {
         self.spheres.is_empty()

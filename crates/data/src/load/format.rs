@@ -115,7 +115,7 @@ pub struct Options {
 }
 
 impl Format {
-    /// Whether a file can have several frames, which [`Trajectory`](super::Trajectory) reads one by one.
+    /// Returns true if a file can have several frames, which [`Trajectory`](super::Trajectory) reads one by one.
     #[must_use]
     pub const fn has_frames(&self) -> bool {
         matches!(self.method, ReadMethod::Frames(_))

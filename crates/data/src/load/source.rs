@@ -13,7 +13,7 @@ use super::error::LoadError;
 /// Number of bytes of a file that are read at a time.
 const PIECE: usize = 1 << 18;
 
-/// The same, for readers that visit places far from each other. Longer data are read without a copy.
+/// The bytes, for readers that visit places far from each other. Longer data are read without a copy.
 const SMALL_PIECE: usize = 1 << 12;
 
 /// Number of first bytes that show the format of data.

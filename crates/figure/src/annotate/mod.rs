@@ -78,7 +78,7 @@ impl Annotations {
         self
     }
 
-    /// Whether there are no annotations.
+    /// Returns true if there are no annotations.
     #[must_use]
     pub fn is_empty(&self) -> bool {
         self.items.is_empty()

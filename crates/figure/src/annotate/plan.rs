@@ -72,7 +72,7 @@ pub enum AnnotationError {
 }
 
 impl AnnotationPlan {
-    /// Whether there is nothing to draw.
+    /// Returns true if there is nothing to draw.
     #[must_use]
     pub fn is_empty(&self) -> bool {
         self.legend.is_none() && self.scale_bar.is_none() && self.labels.is_empty()

@@ -146,7 +146,7 @@ impl MapName {
         self.name
     }
 
-    /// Whether the map is reversed.
+    /// Returns true if the map is reversed.
     #[must_use]
     pub fn is_reversed(&self) -> bool {
         self.is_reversed

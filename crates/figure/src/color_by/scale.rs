@@ -66,7 +66,7 @@ impl Scale {
         [self.low, self.high]
     }
 
-    /// Whether positions follow the logarithm of the numbers.
+    /// Returns true if positions follow the logarithm of the numbers.
     #[must_use]
     pub fn is_log(&self) -> bool {
         self.is_log

@@ -155,7 +155,7 @@ impl SceneFile {
         error
     }
 
-    /// Whether flags say what the camera is.
+    /// Returns true if flags say what the camera is.
     #[must_use]
     pub fn has_camera_of_flags(&self) -> bool {
         self.flags.iter().any(|(key, _)| key == "camera" || key.starts_with("camera."))

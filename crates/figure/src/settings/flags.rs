@@ -75,7 +75,7 @@ impl Flag {
         self.flag.trim_start_matches('-')
     }
 
-    /// Whether the flag may be given several times.
+    /// Returns true if the flag may be given several times.
     #[must_use]
     pub fn is_list(&self) -> bool {
         matches!(self.flag, "--label" | "--set")

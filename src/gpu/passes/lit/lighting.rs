@@ -20,7 +20,7 @@ use crate::scene::material::{Material, SurfaceProperties};
 pub(crate) struct LightingData {
     pub(crate) mode: Mode,
     pub(crate) parameters: LightingParameters,
-    /// The same parameters, as recordings have them.
+    /// The parameters as recordings have them.
     pub(crate) lighting: UploadedLighting,
     /// The tables of lights, materials and energies, which are never empty.
     pub(crate) tables: Vec<[f32; 4]>,

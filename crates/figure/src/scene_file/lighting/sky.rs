@@ -18,7 +18,7 @@ use pinhole::scene::Scene;
 #[derive(Clone, Debug, Deserialize, Serialize)]
 #[serde(tag = "kind", rename_all = "kebab-case", deny_unknown_fields)]
 pub(crate) enum SkyTable {
-    /// The same light from all directions.
+    /// One light from all directions.
     Constant {
         /// The colour; white by default.
         #[serde(default = "white")]
