@@ -209,16 +209,6 @@ impl Image {
         }
     }
 
-    /// Sets colour, normal and albedo, depth and variance. Each list has as many items as the picture has pixels.
-    #[cfg(feature = "run-file")]
-    pub(crate) fn set_guides(&mut self, [color, normal, albedo]: [Vec<[f32; 3]>; 3], [depth, variance]: [Vec<f32>; 2]) {
-        self.set(Layer::Color, color);
-        self.set(Layer::Normal, normal);
-        self.set(Layer::Albedo, albedo);
-        self.set(Layer::Depth, depth);
-        self.set(Layer::Variance, variance);
-    }
-
     pub(crate) fn color_mut(&mut self) -> &mut [[f32; 3]] {
         self.plane_mut(Layer::Color).unwrap_or_default()
     }

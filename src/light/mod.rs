@@ -18,7 +18,7 @@ pub mod environment;
 pub use emitters::Emitters;
 
 /// A light, placed in the world or relative to the camera.
-#[derive(Clone, Copy, Debug, PartialEq, serde::Serialize, serde::Deserialize)]
+#[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Light {
     /// The kind of the light and its parameters.
     pub kind: LightKind,
@@ -27,7 +27,7 @@ pub struct Light {
 }
 
 /// The kind of a light and its parameters. Colours are linear.
-#[derive(Clone, Copy, Debug, PartialEq, serde::Serialize, serde::Deserialize)]
+#[derive(Clone, Copy, Debug, PartialEq)]
 pub enum LightKind {
     /// A light at the eye without shadows. Each surface is lit along the ray that sees it.
     Head {
@@ -123,7 +123,7 @@ impl Light {
 }
 
 /// An infinite matt plane. It is visible, and reflects light, only on the side of its normal.
-#[derive(Clone, Copy, Debug, PartialEq, serde::Serialize, serde::Deserialize)]
+#[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Ground {
     /// A point of the plane, in world space.
     pub point: DVec3,
@@ -137,7 +137,7 @@ pub struct Ground {
 }
 
 /// The sky, which surrounds the scene infinitely far away. Up is +y.
-#[derive(Clone, Debug, PartialEq, serde::Serialize, serde::Deserialize)]
+#[derive(Clone, Debug, PartialEq)]
 pub struct Sky {
     /// The radiance of the sky.
     pub light: SkyLight,
@@ -146,7 +146,7 @@ pub struct Sky {
 }
 
 /// The radiance of a sky.
-#[derive(Clone, Debug, PartialEq, serde::Serialize, serde::Deserialize)]
+#[derive(Clone, Debug, PartialEq)]
 pub enum SkyLight {
     /// One radiance in all directions. Black means no light.
     Constant(LinearRgb),
@@ -159,8 +159,7 @@ pub enum SkyLight {
         /// Radiance from straight down.
         nadir: LinearRgb,
     },
-    /// An image of all directions. Run files store its numbers as arrays.
-    #[serde(skip)]
+    /// An image of all directions.
     Image {
         /// The image.
         environment: Arc<Environment>,

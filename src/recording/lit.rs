@@ -268,7 +268,6 @@ pub(crate) mod flag {
 
 /// The parameters of the lighting on the device: `LightingParameters` in `shaders/scene/lighting_records.wgsl`.
 #[derive(Clone, Debug, Default, PartialEq)]
-#[cfg_attr(feature = "run-file", derive(serde::Serialize, serde::Deserialize))]
 pub struct UploadedLighting {
     /// Colour of the background.
     pub background: [f32; 3],

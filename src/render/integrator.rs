@@ -7,7 +7,7 @@ use crate::light::codes;
 use crate::range::RangeError;
 
 /// The algorithm that turns rays into colours.
-#[derive(Clone, Debug, PartialEq, serde::Serialize, serde::Deserialize)]
+#[derive(Clone, Debug, PartialEq)]
 pub enum Integrator {
     /// Colours the surface that the ray through a pixel's centre hits first. Uses no lights.
     Primary(Shading),

@@ -33,7 +33,7 @@ pub use progress::{Decision, Picture, Progress, Watch};
 pub(crate) use progress::{Totals, batch};
 
 /// All settings of a picture apart from the scene and the view.
-#[derive(Clone, Debug, PartialEq, serde::Serialize, serde::Deserialize)]
+#[derive(Clone, Debug, PartialEq)]
 pub struct RenderSettings {
     /// The algorithm that turns rays into colours.
     pub integrator: Integrator,

@@ -170,8 +170,8 @@ fn run_files_keep_every_kind() {
         let recording = made(&kind.scene, &camera(), film());
         let written = |scene: &Scene| {
             let mut bytes = Vec::new();
-            let (from, extras) = (run_file::Provenance::default(), run_file::Extras::default());
-            run_file::write_with(scene, &recording, &from, extras, &mut bytes).unwrap();
+            let from = run_file::Provenance::default();
+            run_file::write(scene, &recording, &from, &mut bytes).unwrap();
             bytes
         };
         let bytes = written(&kind.scene);

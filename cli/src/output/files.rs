@@ -74,7 +74,7 @@ impl NewFolder {
 }
 
 /// Creates a temporary file in the folder of the final file. It is removed if the program is stopped.
-pub(crate) fn temporary(path: &Path) -> Result<NamedTempFile> {
+fn temporary(path: &Path) -> Result<NamedTempFile> {
     temporary_in(folder(&canonical(path)), path)
 }
 

@@ -48,7 +48,7 @@ fn nothing([width, height]: [u32; 2]) -> Run {
 
 fn bytes(Run { scene, recording, provenance }: &Run) -> Vec<u8> {
     let mut bytes = Vec::new();
-    run_file::write_with(scene, recording, provenance, run_file::Extras::default(), &mut bytes).unwrap();
+    run_file::write(scene, recording, provenance, &mut bytes).unwrap();
     bytes
 }
 
@@ -163,18 +163,18 @@ fn runs_that_are_damaged() {
     let whole = folder.read("run");
     let mut altered = whole.clone();
     *altered.last_mut().unwrap() ^= 1;
-    let version = String::from_utf8_lossy(&whole).find("\"pinhole_run\":\"7\"").unwrap();
+    let version = String::from_utf8_lossy(&whole).find("\"pinhole_run\":\"8\"").unwrap();
     // The number of the version is replaced by another of the same length.
-    assert!(whole[version..].starts_with(b"\"pinhole_run\":\"7\""));
+    assert!(whole[version..].starts_with(b"\"pinhole_run\":\"8\""));
     let mut other = whole.clone();
-    other[version + 15] = b'8';
+    other[version + 15] = b'7';
     for (name, contents, words) in [
         ("cut", &whole[..whole.len() - 1], "cut: the run file is cut off: it has "),
         ("altered", &altered, "altered: the run file was altered after it was written"),
         (
             "other",
             &other,
-            "other: run file of version 8; this program reads version 7; record it again with `verify --save`",
+            "other: run file of version 7; this program reads version 8; record it again with `verify --save`",
         ),
         ("none", b"PK\x03\x04 something else", "none: this is not a run file; `pinhole verify --save`"),
         ("empty", b"", "empty: this is not a run file"),

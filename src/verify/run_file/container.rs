@@ -49,7 +49,7 @@ struct Header<'a> {
 }
 
 /// Gives `count` bytes of a reader to a sink, in pieces.
-pub(super) fn in_pieces(source: &mut (impl Read + ?Sized), count: u64, sink: &mut Sink<'_>) -> io::Result<()> {
+fn in_pieces(source: &mut (impl Read + ?Sized), count: u64, sink: &mut Sink<'_>) -> io::Result<()> {
     let next = |left: u64| left.min(PIECE) as usize;
     let mut piece = vec![0; next(count)];
     let mut left = count;
@@ -84,7 +84,7 @@ pub(super) fn write(
         let start = end;
         end += array.bytes();
         let (dtype, shape) = (array.dtype, array.shape.clone());
-        (&*array.name, TensorInfo { dtype, shape, data_offsets: (start, end) })
+        (array.name, TensorInfo { dtype, shape, data_offsets: (start, end) })
     });
     let header = Header { metadata: &metadata, arrays: infos.collect() };
     let mut header = serde_json::to_vec(&header)?;
@@ -190,7 +190,7 @@ impl<'a> Container<'a> {
         Ok(Self { header: parsed, source: RefCell::new(source), start })
     }
 
-    pub(super) fn emit(&self, name: &str, sink: &mut Sink<'_>) -> Result<(), RunFileError> {
+    fn emit(&self, name: &str, sink: &mut Sink<'_>) -> Result<(), RunFileError> {
         let (start, end) = self.info(name)?.data_offsets;
         let mut source = self.source.borrow_mut();
         source.seek(SeekFrom::Start(self.start + start as u64))?;
@@ -204,11 +204,6 @@ impl<'a> Container<'a> {
 
     pub(super) fn text(&self, key: &str) -> Result<&str, RunFileError> {
         text(&self.header, key).ok_or_else(|| contradiction(format!("the text `{key}` is missing")))
-    }
-
-    pub(super) fn whole(&self, key: &str) -> Result<u32, RunFileError> {
-        let words = || contradiction(format!("the text `{key}` is not a valid number"));
-        self.text(key)?.parse().map_err(|_| words())
     }
 
     pub(super) fn has_text(&self, key: &str) -> bool {
@@ -319,9 +314,9 @@ type Emit<'a> = dyn Fn(&mut Sink<'_>) -> io::Result<()> + 'a;
 
 /// An array to be written. Its bytes are generated when they are needed.
 pub(super) struct Array<'a> {
-    pub(super) name: Cow<'static, str>,
-    pub(super) dtype: Dtype,
-    pub(super) shape: Vec<usize>,
+    name: &'static str,
+    dtype: Dtype,
+    shape: Vec<usize>,
     emit: Box<Emit<'a>>,
 }
 
@@ -342,7 +337,7 @@ impl<'a> Array<'a> {
         };
         let columns = (N > 1).then_some(N);
         let shape = shape.iter().copied().chain(columns).collect();
-        Self { name: name.into(), dtype: E::DTYPE, shape, emit: Box::new(emit) }
+        Self { name, dtype: E::DTYPE, shape, emit: Box::new(emit) }
     }
 
     /// An array with an item for each element of a list; see [`Array::new`].
@@ -355,21 +350,12 @@ impl<'a> Array<'a> {
         Self::new(name, &[items.len()], items, numbers)
     }
 
-    /// An array whose bytes a function writes.
-    pub(super) fn emitted<E: Number>(
-        name: String,
-        shape: Vec<usize>,
-        emit: impl Fn(&mut Sink<'_>) -> io::Result<()> + 'a,
-    ) -> Self {
-        Self { name: name.into(), dtype: E::DTYPE, shape, emit: Box::new(emit) }
-    }
-
     /// The array of spheres, which is also the input of the scene's digest.
     pub(super) fn spheres(scene: &'a Scene) -> Self {
         Self::list("spheres", scene.spheres(), |sphere| *sphere)
     }
 
-    pub(super) fn bytes(&self) -> usize {
+    fn bytes(&self) -> usize {
         self.shape.iter().product::<usize>() * self.dtype.bitsize() / 8
     }
 

@@ -3,7 +3,7 @@
 use sha2::{Digest, Sha256};
 
 /// The version of the format that this crate writes and reads.
-pub const VERSION: &str = "7";
+pub const VERSION: &str = "8";
 
 /// Why bytes are not a valid run file.
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]

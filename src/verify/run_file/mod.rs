@@ -1,4 +1,5 @@
-//! Run files: a recording with its scene, which can be judged again on any machine, with or without a GPU.
+//! Run files: a recording with its scene, which can be judged again on any machine, with or without a GPU. They hold no
+//! light: pictures with light are judged from their own files ([`finished`](super::finished)).
 //!
 //! A run file has the format `safetensors`, which Python reads with `safetensors.numpy.load_file`. With H rows of W
 //! pixels, n spheres and m colours, its arrays are:
@@ -27,44 +28,11 @@
 //! | `surfaces` | f32 (k, 5) | surface properties: material (0 Lambert, 1 conductor, 2 dielectric, 3 emissive), three parameters, and opacity; absent if they are the default |
 //! | `surface_index` | u32 (n,) | indices into them; absent if all spheres have the first |
 //!
-//! For a lit picture, a file also has the request and the inputs of the device:
-//!
-//! | array | type, shape | |
-//! |---|---|---|
-//! | `sky_texels` | f32 (h, w, 3) | the image of the sky |
-//! | `sky_uploaded`, `sky_shares` | f32 (hw, 3), f32 (…,) | the image on the device and its tables, if they differ |
-//! | `lit_view`, `lit_advance` | like `view`, `advance` | |
-//! | `occluders` | f32 (2, 3) | `occluders` of [`LitInputs`](super::LitInputs) |
-//! | `tables`, `emitters` | u32 (…, 4) | tables on the device, as bits |
-//!
-//! and for each sample i from 0 on, with P pixels in its rectangle and S surfaces, the arrays `sample_i_…`:
-//!
-//! | array | type, shape | |
-//! |---|---|---|
-//! | `place` | u32 (5,) | index of the sample in its pixels; first column and row, width and height of the rectangle |
-//! | `start` | u32 (P, 9, 4) | the states of the rays at the camera, as bits |
-//! | `before`, `after` | u32 (P, 3, 4) | the sums of the pixels without and with the sample, as bits |
-//! | `hits`, `states` | u32 (S, P, 4), (S, P, 9, 4) | the hits, and the states after shading, as bits |
-//! | `open` | u32 (S, P) | along paths: the visibility of the light, as bits |
-//! | `hidden`, `radiance`, `left` | u32 (S, B, P), (S, B, P, 4), (S, B, P) | in studios: for each 32 lights and each 32 directions the hidden ones, the radiance with the others, and the bits that are left |
-//!
-//! It may also have these arrays:
-//!
-//! | array | type, shape | |
-//! |---|---|---|
-//! | `noisy_color`, `noisy_normal`, `noisy_depth`, `noisy_albedo`, `noisy_variance` | f32 (h, w, 3), (h, w) | the small picture that the device denoised |
-//! | `denoised_color` | f32 (h, w, 3) | the denoised picture |
-//! | `shown` | u8 (H, W, 3) | the lit picture as people see it, in sRGB; it is not judged |
-//!
 //! The metadata are texts: `pinhole_run`, the version of the format, [`VERSION`]; `sha256`, the digest of the
 //! whole file, computed with zeros in place of its own 64 digits; `scene_sha256`, the digest of the array
 //! `spheres`; `camera`, `y_axis` and `shading`; `rendered`, which is `same` or `other` if the view was also
-//! rendered without recording; and the fields of [`Provenance`], with the prefix `limit_` for limits. With
-//! light, `lit_samples` is the number of samples, at most [`MAX_SAMPLES`]; `requested` and `given` are JSON:
-//! [`RenderSettings`](crate::RenderSettings), with strength and rotation of the sky's image apart, and the
-//! inputs of the device for them: the parameters of the lighting, and `max_surfaces` of
-//! [`LitInputs`](super::LitInputs); and `request_sha256` is a digest of the request: scene, camera, settings,
-//! lights and sky. The same run gives the same file, to the byte.
+//! rendered without recording; and the fields of [`Provenance`], with the prefix `limit_` for limits. The same run
+//! gives the same file, to the byte.
 //!
 //! Input from the host is validated like scenes, films and cameras. The results of the device are kept as they are,
 //! even if they are wrong, because the checker judges them. Digests are no signatures: whoever writes a file can write
@@ -72,8 +40,6 @@
 
 mod container;
 mod error;
-mod lit_inputs;
-mod lit_samples;
 mod read;
 mod write;
 
@@ -87,9 +53,8 @@ use container::{Array, sink_into};
 pub(super) use error::hex;
 
 pub use error::{RunFileError, VERSION};
-pub use lit_samples::{LitSamples, MAX_SAMPLES, Spool};
-pub use read::{RunFile, read};
-pub use write::{Extras, FinalPicture, write_with};
+pub use read::{read, read_from};
+pub use write::write;
 
 /// The contents of a run file.
 #[derive(Clone, Debug)]

@@ -6,109 +6,33 @@ use glam::DVec3;
 
 use crate::camera::film::{Film, YAxis};
 use crate::camera::{CameraKind, CameraVectors};
+use crate::image::Image;
 use crate::image::color::LinearRgb;
-use crate::image::denoise::GUIDES;
-use crate::image::{Image, LayerSet};
 use crate::parallel::try_map;
 use crate::render::{PrimarySettings, Shading};
 use crate::scene::material::{Material, SurfaceProperties};
 use crate::scene::{Appearance, Colors, Scene};
 use crate::text::shortened;
 use crate::verify::run_file::container::{Container, Flag, contradiction};
-use crate::verify::run_file::write::FinalPicture;
-use crate::verify::run_file::{LIMIT, Provenance, Run, RunFileError, lit_inputs, lit_samples, scene_sha256};
-use crate::verify::{LitRecording, PlainRender, Recording, RequestedCamera, TracedPixel, TracedRay};
+use crate::verify::run_file::{LIMIT, Provenance, Run, RunFileError, scene_sha256};
+use crate::verify::{PlainRender, Recording, RequestedCamera, TracedPixel, TracedRay, UploadedView};
 
-/// An open run file. It is complete and unaltered, but its contents may not be valid.
-///
-/// Arrays are read when they are needed, and light sample by sample, so a file may be larger than the memory.
-pub struct RunFile<'a> {
-    file: Container<'a>,
-}
-
-impl std::fmt::Debug for RunFile<'_> {
-    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
-        f.debug_struct("RunFile").finish_non_exhaustive()
-    }
-}
-
-impl<'a> RunFile<'a> {
-    /// Opens a run file and reads all of it once, for its digest.
-    ///
-    /// # Errors
-    /// Returns an error if the file cannot be read, is not a run file, has another version, or was altered.
-    pub fn open<S: Read + Seek>(source: &'a mut S) -> Result<Self, RunFileError> {
-        Ok(Self { file: Container::open(source)? })
-    }
-
-    /// Reads the scene and the picture by one ray for each pixel.
-    ///
-    /// # Errors
-    /// Returns an error if scene, film, camera or settings are not valid.
-    pub fn run(&self) -> Result<Run, RunFileError> {
-        let Self { file } = self;
-        Ok(Run { scene: scene(file)?, recording: recording(file)?, provenance: provenance(file)? })
-    }
-
-    /// Reads the samples of the lit picture, one after the other, and calls `each` with a recording of every sample, as
-    /// [`Headless::record_lit`](crate::gpu::Headless::record_lit) does. `run` is the result of [`RunFile::run`].
-    /// Returns whether the file has light.
-    ///
-    /// # Errors
-    /// Returns an error if the requested lighting or the shape of a sample is not valid.
-    pub fn light(&self, run: &Run, each: &mut dyn FnMut(&LitRecording)) -> Result<bool, RunFileError> {
-        lit_samples::each_sample(&self.file, &run.scene, &run.recording, each)
-    }
-
-    /// Reads the noisy picture that the device denoised, and the denoised picture; `None` if the file has neither.
-    ///
-    /// # Errors
-    /// Returns an error if their shapes are not valid.
-    pub fn denoised(&self) -> Result<Option<[Image; 2]>, RunFileError> {
-        let Self { file } = self;
-        if !file.has("noisy_color") {
-            return Ok(None);
-        }
-        let film = film_of(file, "noisy_color", "the array `noisy_color`")?;
-        let size = [film.width(), film.height()];
-        let all = [size[1] as usize, size[0] as usize];
-        let other = || contradiction("the pictures of the denoiser have no valid size");
-        let empty = |layers: LayerSet| Image::new(size[0], size[1], layers).map_err(|_| other());
-        let (mut noisy, mut denoised) = (empty(GUIDES)?, empty(LayerSet::COLOR)?);
-        let vectors = |name| file.items::<f32, 3>(name, &all);
-        let numbers = |name| file.numbers::<f32>(name, &all);
-        noisy.set_guides(
-            [vectors("noisy_color")?, vectors("noisy_normal")?, vectors("noisy_albedo")?],
-            [numbers("noisy_depth")?, numbers("noisy_variance")?],
-        );
-        denoised.color_mut().copy_from_slice(&vectors("denoised_color")?);
-        Ok(Some([noisy, denoised]))
-    }
-
-    /// Reads the lit picture that people are shown; `None` if the file has none.
-    ///
-    /// # Errors
-    /// Returns an error if its shape is not valid.
-    pub fn shown(&self) -> Result<Option<FinalPicture>, RunFileError> {
-        let Self { file } = self;
-        if !file.has("shown") {
-            return Ok(None);
-        }
-        let film = film_of(file, "shown", "the array `shown`")?;
-        let size = [film.width(), film.height()];
-        let srgb = file.items("shown", &[size[1] as usize, size[0] as usize])?;
-        let (samples, wanted) = (file.whole("shown_samples")?, file.whole("shown_wanted")?);
-        Ok(Some(FinalPicture { size, srgb, samples, wanted }))
-    }
-}
-
-/// Reads the scene and the picture by one ray for each pixel from a run file in memory.
+/// Reads a run file in memory.
 ///
 /// # Errors
 /// Returns an error if the bytes are not a run file, have another version, or were altered, or if scene, film, camera
 /// or settings are not valid.
 pub fn read(bytes: &[u8]) -> Result<Run, RunFileError> {
-    RunFile::open(&mut Cursor::new(bytes))?.run()
+    read_from(&mut Cursor::new(bytes))
+}
+
+/// Reads a run file. All of it is read once for its digest, before the arrays are read.
+///
+/// # Errors
+/// Returns the same errors as [`read`], and an error if the file cannot be read.
+pub fn read_from<S: Read + Seek>(source: &mut S) -> Result<Run, RunFileError> {
+    let file = &Container::open(source)?;
+    Ok(Run { scene: scene(file)?, recording: recording(file)?, provenance: provenance(file)? })
 }
 
 fn scene(file: &Container<'_>) -> Result<Scene, RunFileError> {
@@ -149,13 +73,19 @@ fn recording(file: &Container<'_>) -> Result<Recording, RunFileError> {
     };
     Ok(Recording {
         camera: camera(file)?,
-        uploaded: lit_inputs::view(file, ["view", "advance"])?,
+        uploaded: view(file)?,
         film,
         primary,
         pixels: pixels(file, &shape)?,
         image: image(file, &film, ["color", "depth", "normal", "id"])?,
         rendered: rendered(file, &film)?,
     })
+}
+
+fn view(file: &Container<'_>) -> Result<UploadedView, RunFileError> {
+    let [origin, right, up, forward, numbers, scene_min, scene_max] = file.fixed("view")?;
+    let advance = file.numbers::<f32>("advance", &[1])?.first().copied().unwrap_or_default();
+    Ok(UploadedView { origin, advance, right, up, forward, numbers, scene_min, scene_max })
 }
 
 fn image(file: &Container<'_>, film: &Film, [color, depth, normal, id]: [&str; 4]) -> Result<Image, RunFileError> {

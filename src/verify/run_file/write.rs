@@ -9,48 +9,15 @@ use crate::image::Image;
 use crate::scene::material::SurfaceProperties;
 use crate::scene::{Colors, Scene};
 use crate::verify::run_file::container::{Array, Flag};
-use crate::verify::run_file::lit_samples::{LitSamples, SAMPLES};
-use crate::verify::run_file::{LIMIT, Provenance, container, lit_inputs, scene_sha256};
-use crate::verify::{PlainRender, Recording, TracedPixel};
-
-/// The contents that a run file may have besides the picture by one ray for each pixel.
-#[derive(Clone, Copy, Debug, Default)]
-pub struct Extras<'a> {
-    /// Samples of the lit picture.
-    pub light: Option<&'a LitSamples>,
-    /// A noisy picture, and the result of the device's denoiser.
-    pub denoised: Option<[&'a Image; 2]>,
-    /// The lit picture as it is shown to people.
-    pub shown: Option<&'a FinalPicture>,
-}
-
-/// A lit picture as people see it. It is not judged.
-#[derive(Clone, Debug, PartialEq, Eq)]
-pub struct FinalPicture {
-    /// Width and height in pixels.
-    pub size: [u32; 2],
-    /// The pixels in sRGB with 8 bits, row by row from the top, as exposure and tone curve make them.
-    pub srgb: Vec<[u8; 3]>,
-    /// The number of samples of each pixel.
-    pub samples: u32,
-    /// The number of samples that the scene asks for.
-    pub wanted: u32,
-}
+use crate::verify::run_file::{LIMIT, Provenance, container, scene_sha256};
+use crate::verify::{PlainRender, Recording, TracedPixel, UploadedView};
 
 /// Writes a run file in small pieces: 98 bytes for each pixel, 130 if a different picture was rendered, and 16 to 24
-/// for each sphere. Each sample of light has 240 bytes for each pixel of its rectangle. Each surface adds 164 bytes, or in
-/// studios 160 and 24 for each 32 lights or directions.
+/// for each sphere.
 ///
 /// # Errors
-/// Returns an error if writing fails, if the recording has another size than its film or lacks a layer, if the samples
-/// have another camera or film than the recording, or if the noisy picture lacks a layer.
-pub fn write_with(
-    scene: &Scene,
-    recording: &Recording,
-    provenance: &Provenance,
-    Extras { light, denoised, shown }: Extras<'_>,
-    out: &mut dyn Write,
-) -> io::Result<()> {
+/// Returns an error if writing fails, or if the recording has another size than its film or lacks a layer.
+pub fn write(scene: &Scene, recording: &Recording, provenance: &Provenance, out: &mut dyn Write) -> io::Result<()> {
     let Recording { camera, uploaded, film, primary, pixels, image, rendered } = recording;
     let shape = [film.height() as usize, film.width() as usize];
     let layers = layers_of(image, shape, "recording", ["color", "depth", "normal", "id"])?;
@@ -78,6 +45,8 @@ pub fn write_with(
     let vectors = &camera.vectors;
     let numbers = vectors.numbers.into();
     let camera = vec![vectors.origin, vectors.right, vectors.up, vectors.forward, numbers];
+    let UploadedView { origin, right, up, forward, numbers, scene_min, scene_max, .. } = *uploaded;
+    let view = vec![origin, right, up, forward, numbers, scene_min, scene_max];
     let ray = |pixel: &TracedPixel| pixel.ray.unwrap_or_default();
     let shading = |pixel: &TracedPixel| pixel.shading_ray.unwrap_or_default();
     let mut arrays = vec![
@@ -85,9 +54,8 @@ pub fn write_with(
         Array::new("scene_origin", &[], vec![scene.origin()], |origin| origin.to_array()),
         Array::spheres(scene),
         Array::new("background", &[], vec![primary.background], |color| color.to_array()),
-    ];
-    arrays.extend(lit_inputs::view_arrays(uploaded, ["view", "advance"]));
-    arrays.extend([
+        Array::list("view", view, |vector| *vector),
+        Array::list("advance", vec![uploaded.advance], |advance| [*advance]),
         Array::new("ray_origin", &shape, pixels, move |pixel| ray(pixel).origin),
         Array::new("ray_direction", &shape, pixels, move |pixel| ray(pixel).direction),
         Array::new("ray_distance", &shape, pixels, move |pixel| [ray(pixel).distance]),
@@ -96,7 +64,7 @@ pub fn write_with(
         Array::new("shading_distance", &shape, pixels, move |pixel| [shading(pixel).distance]),
         Array::new("hit_t", &shape, pixels, |pixel| [pixel.t]),
         Array::new("hit_id", &shape, pixels, |pixel| [pixel.id]),
-    ]);
+    ];
     arrays.extend(layers);
     if let PlainRender::Other(image) = rendered {
         let names = ["rendered_color", "rendered_depth", "rendered_normal", "rendered_id"];
@@ -129,38 +97,6 @@ pub fn write_with(
     }
     let indices = appearance.surface_indices();
     arrays.extend(indices.map(|all| Array::list("surface_index", all, |index| [*index])));
-    if let Some((samples, given)) = light.and_then(|samples| Some((samples, samples.given()?))) {
-        if (&given.camera, &given.film) != (&recording.camera, film) {
-            return Err(io::Error::other("the light is that of another camera or film"));
-        }
-        lit_inputs::add(given, &mut arrays, &mut texts)?;
-        texts.insert(SAMPLES.to_owned(), samples.count().to_string());
-        arrays.extend(samples.arrays());
-    }
-    if let Some([noisy, denoised]) = denoised {
-        let layers = (noisy.normal(), noisy.depth(), noisy.albedo(), noisy.variance());
-        let (Some(normal), Some(depth), Some(albedo), Some(variance)) = layers else {
-            return Err(io::Error::other("the noisy picture lacks a layer"));
-        };
-        let [size, other] = [noisy, denoised].map(|image| [image.height() as usize, image.width() as usize]);
-        arrays.extend([
-            Array::new("noisy_color", &size, noisy.color(), |color| *color),
-            Array::new("noisy_normal", &size, normal, |normal| *normal),
-            Array::new("noisy_depth", &size, depth, |depth| [*depth]),
-            Array::new("noisy_albedo", &size, albedo, |albedo| *albedo),
-            Array::new("noisy_variance", &size, variance, |variance| [*variance]),
-            Array::new("denoised_color", &other, denoised.color(), |color| *color),
-        ]);
-    }
-    if let Some(FinalPicture { size: [width, height], srgb, samples, wanted }) = shown {
-        if u64::from(*width) * u64::from(*height) != srgb.len() as u64 {
-            return Err(io::Error::other("the shown picture does not have the size that it names"));
-        }
-        let size = [*height as usize, *width as usize];
-        arrays.push(Array::new("shown", &size, srgb, |pixel| *pixel));
-        texts.insert("shown_samples".to_owned(), samples.to_string());
-        texts.insert("shown_wanted".to_owned(), wanted.to_string());
-    }
     container::write(texts, arrays, out)
 }
 

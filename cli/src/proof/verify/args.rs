@@ -42,7 +42,7 @@ pub(crate) struct VerifyArgs {
     /// Also write the results as a web page, report.html, into this folder, which is created if it is missing
     #[arg(long, value_name = "DIR")]
     pub(crate) report: Option<PathBuf>,
-    /// Also save the scene and the recording to this file, for --replay
+    /// Also save the scene and the recording, without its light, to this file, for --replay
     #[arg(long, value_name = "RUN")]
     pub(crate) save: Option<PathBuf>,
     /// Check a saved recording again; this needs no adapter

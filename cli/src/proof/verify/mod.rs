@@ -5,7 +5,7 @@ use std::fmt::Display;
 use anyhow::{Context, anyhow};
 
 use crate::proof::verify::args::VerifyArgs;
-use crate::proof::verify::output::VerifyJob;
+use crate::proof::verify::output::{JudgedLight, VerifyJob};
 use crate::proof::verify::report::{Report, open_pixels};
 use crate::terminal::failure::Failure;
 use crate::terminal::progress::{self, answer};
@@ -25,7 +25,7 @@ pub(crate) fn run(args: &VerifyArgs) -> Result<(), Failure> {
     if let (Some(scene), Some(picture)) = (&args.scene, &args.path) {
         return picture::run(args, picture, scene);
     }
-    let VerifyJob { run, outputs, light, denoiser, rendered, kept } = match (&args.replay, &args.path) {
+    let VerifyJob { run, outputs, light } = match (&args.replay, &args.path) {
         (Some(path), _) => output::replay(path, args)?,
         #[cfg(feature = "gpu")]
         (None, Some(path)) => record::recorded(path, args)?,
@@ -41,19 +41,16 @@ pub(crate) fn run(args: &VerifyArgs) -> Result<(), Failure> {
     progress::stage("checking");
     let checker = Checker::new(&run.scene).context("the checker cannot be prepared")?;
     let certificate = checker.certify(&run.recording);
-    let mut report = Report::new(&run, &certificate, light.as_ref(), denoiser.as_ref());
-    if let (Some(judged), Some(shown)) = (&rendered, &kept.shown) {
-        report.judge_rendered(judged, shown);
-    }
+    let mut report = Report::new(&run, &certificate, light.as_ref());
     report.open = open_pixels(&checker, &run.recording, &certificate);
     drop(checker);
     progress::clear();
     answer(report.table().as_bytes())?;
-    outputs.write(&run, &certificate, &report, &kept)?;
-    let of_light = light.as_ref().map_or(Ok(()), verdict_of_light);
+    outputs.write(&run, &certificate, &report, light.as_ref())?;
+    let of_picture = verdict(&certificate);
+    let Some(JudgedLight { stages, denoiser, rendered, .. }) = light else { return of_picture };
     let of_denoiser = denoiser.as_ref().map_or(Ok(()), verdict_of_denoiser);
-    let of_rendered = rendered.as_ref().map_or(Ok(()), verdict_of_rendered);
-    worse(worse(worse(verdict(&certificate), of_light), of_denoiser), of_rendered)
+    worse(worse(worse(of_picture, verdict_of_light(&stages)), of_denoiser), verdict_of_rendered(&rendered))
 }
 
 /// Returns the first failure, except that a violation takes precedence over an undecided check.

@@ -1,6 +1,5 @@
 //! The checks of `pinhole verify`, and its output files, which are written all or none.
 
-use std::io::Write;
 use std::path::{Path, PathBuf};
 
 use anyhow::{Context, Result};
@@ -11,63 +10,54 @@ use crate::output::files::{
 };
 use crate::proof::verify::args::VerifyArgs;
 use crate::proof::verify::page::page;
-use crate::proof::verify::report::{self, Report};
+use crate::proof::verify::report::Report;
 use crate::terminal::failure::Failure;
 use crate::terminal::text::json;
 use crate::terminal::{progress, threads};
-use pinhole::image::Image;
 use pinhole::verify::denoised::DenoiseCertificate;
 use pinhole::verify::finished::FinishedCertificate;
-use pinhole::verify::run_file::{self, Extras, FinalPicture, LitSamples, Run, RunFile};
-use pinhole::verify::{Certificate, Checker, LitCertificate};
+use pinhole::verify::run_file::{self, Run};
+use pinhole::verify::{Certificate, LitCertificate};
 
 /// A recording to check, and the outputs to write.
 pub(crate) struct VerifyJob {
     pub(crate) run: Run,
     pub(crate) outputs: VerifyOutputs,
-    /// The certificate of the light, if it was checked.
-    pub(crate) light: Option<LitCertificate>,
+    /// The light of a scene with lighting, if it was rendered now.
+    pub(crate) light: Option<JudgedLight>,
+}
+
+/// The light of a picture, and what was found of it.
+#[cfg_attr(not(feature = "gpu"), expect(dead_code, reason = "light is judged where it is rendered"))]
+pub(crate) struct JudgedLight {
+    /// The certificate of samples, stage by stage.
+    pub(crate) stages: LitCertificate,
     /// The certificate of the denoiser, if the scene asks for it.
     pub(crate) denoiser: Option<DenoiseCertificate>,
-    /// The verdicts about the picture that `render` makes with light, if it was judged.
-    pub(crate) rendered: Option<FinishedCertificate>,
-    /// Data about the light, for a run file and the page.
-    pub(crate) kept: KeptLight,
+    /// The verdicts about the picture that `render` makes.
+    pub(crate) rendered: FinishedCertificate,
+    /// The picture to show.
+    pub(crate) shown: FinalPicture,
 }
 
-/// Data of a lit picture that are kept.
-#[derive(Default)]
-pub(crate) struct KeptLight {
-    /// The recorded samples, if a run file is written.
-    pub(crate) samples: Option<LitSamples>,
-    /// The noisy picture and the denoised one.
-    pub(crate) denoised: Option<[Image; 2]>,
-    /// The lit picture to show.
-    pub(crate) shown: Option<FinalPicture>,
+/// A lit picture as people see it. It is not judged.
+pub(crate) struct FinalPicture {
+    /// The pixels in sRGB with 8 bits, row by row from the top, as exposure and tone curve make them.
+    pub(crate) srgb: Vec<[u8; 3]>,
+    /// The number of samples of each pixel.
+    pub(crate) samples: u32,
+    /// The number of samples that the scene asks for.
+    pub(crate) wanted: u32,
 }
 
-/// Reads a run file and judges the light in it, sample by sample.
+/// Reads a run file.
 pub(crate) fn replay(path: &Path, args: &VerifyArgs) -> Result<VerifyJob, Failure> {
     let outputs = VerifyOutputs::new(args)?;
     outputs.check_not_inputs(&[path.to_path_buf()])?;
     threads::start()?;
     progress::stage(format!("reading {}", path.display()));
-    let mut source = open_seekable(path)?;
-    let of_file = || path.display().to_string();
-    let file = RunFile::open(&mut source).with_context(of_file)?;
-    let run = file.run().with_context(of_file)?;
-    let checker = Checker::new(&run.scene).context("the checker cannot be prepared")?;
-    progress::stage("checking light");
-    let mut certificate = LitCertificate::default();
-    let has_light = file.light(&run, &mut |recording| {
-        certificate.join(checker.certify_lit(recording));
-    });
-    let has_light = has_light.with_context(of_file)?;
-    drop(checker);
-    let denoised = file.denoised().with_context(of_file)?;
-    let denoiser = denoised.as_ref().map(report::judge).transpose()?;
-    let kept = KeptLight { shown: file.shown().with_context(of_file)?, ..KeptLight::default() };
-    Ok(VerifyJob { run, outputs, light: has_light.then_some(certificate), denoiser, rendered: None, kept })
+    let run = run_file::read_from(&mut open_seekable(path)?).with_context(|| path.display().to_string())?;
+    Ok(VerifyJob { run, outputs, light: None })
 }
 
 const PAGE: &str = "report.html";
@@ -114,7 +104,7 @@ impl VerifyOutputs {
         run: &Run,
         certificate: &Certificate,
         report: &Report<'_>,
-        kept: &KeptLight,
+        light: Option<&JudgedLight>,
     ) -> Result<()> {
         let write = || {
             let mut files = Vec::new();
@@ -125,21 +115,15 @@ impl VerifyOutputs {
             }
             if let Some(path) = &self.page {
                 progress::stage("drawing the report");
-                let page = page(run, certificate, report, kept.shown.as_ref(), self.run.as_deref().map(Path::display))?;
+                let shown = light.map(|light| &light.shown);
+                let page = page(run, certificate, report, shown, self.run.as_deref().map(Path::display))?;
                 files.push((path, unnamed(path, page.as_bytes())?));
             }
             if let Some(path) = &self.save {
                 progress::stage("writing the run");
-                let extras = Extras {
-                    light: kept.samples.as_ref(),
-                    denoised: kept.denoised.as_ref().map(|[noisy, quiet]| [noisy, quiet]),
-                    shown: kept.shown.as_ref(),
-                };
                 let Run { scene, recording, provenance } = run;
-                let file = unnamed_with(path, |file| {
-                    let file = file.as_file_mut() as &mut dyn Write;
-                    run_file::write_with(scene, recording, provenance, extras, file)
-                })?;
+                let file =
+                    unnamed_with(path, |file| run_file::write(scene, recording, provenance, file.as_file_mut()))?;
                 files.push((path, file));
             }
             name_all(files)

@@ -8,11 +8,12 @@ use anyhow::{Context, Result};
 use rayon::prelude::*;
 use serde::Serialize;
 
+use crate::proof::verify::output::FinalPicture;
 use crate::proof::verify::report::Report;
 use pinhole::LinearRgb;
 use pinhole::image::NO_ID;
 use pinhole::image::color::to_srgb8;
-use pinhole::verify::run_file::{FinalPicture, Run};
+use pinhole::verify::run_file::Run;
 use pinhole::verify::{Certificate, TracedPixel, Verdict};
 use pinhole_figure::write::png;
 

@@ -1,21 +1,19 @@
 //! Recordings of a device for `pinhole verify`: a picture with one ray per pixel, samples of light, and denoising.
 
-use std::cell::RefCell;
 use std::collections::BTreeSet;
 use std::path::Path;
 use std::sync::Arc;
 
-use anyhow::{Context, anyhow};
+use anyhow::Context;
 
 use crate::input::{Input, Source};
-use crate::output::files;
 use crate::output::picture::{Outputs, PictureFormat};
 use crate::proof::certified::{self, FilePicture};
 use crate::proof::render_certified::witness;
 use crate::proof::self_test;
 use crate::proof::verify::args::VerifyArgs;
-use crate::proof::verify::output::{KeptLight, VerifyJob, VerifyOutputs};
-use crate::proof::verify::report::{self, command_line};
+use crate::proof::verify::output::{FinalPicture, JudgedLight, VerifyJob, VerifyOutputs};
+use crate::proof::verify::report::command_line;
 use crate::render;
 use crate::render::device::{AdapterReport, OpenDevice, WantedAdapter, explained_alone};
 use crate::render::views::views_of;
@@ -24,12 +22,13 @@ use crate::terminal::failure::Failure;
 use crate::terminal::progress::{self, tell};
 use crate::terminal::{interrupt, memory, threads};
 use pinhole::accel::{AccelChoice, Structure};
-use pinhole::gpu::{Decision, Headless, LitPart, Progress, SampleRequest, Wait};
+use pinhole::gpu::{Headless, LitPart, Progress, SampleRequest, Wait};
 use pinhole::image::color::to_srgb8;
 use pinhole::image::denoise::GUIDES;
 use pinhole::image::{Image, LayerSet};
+use pinhole::verify::denoised;
 use pinhole::verify::finished::FinishedCertificate;
-use pinhole::verify::run_file::{self, FinalPicture, LitSamples, Provenance, Run};
+use pinhole::verify::run_file::{Provenance, Run};
 use pinhole::verify::{Checker, LitCertificate, LitRecording};
 
 /// Renders a scene on an adapter and records it.
@@ -54,12 +53,11 @@ pub(crate) fn recorded(path: &Path, args: &VerifyArgs) -> Result<VerifyJob, Fail
             )));
         }
     }
-    // Each sample is recorded in the middle, and again in a part elsewhere.
-    let most = run_file::MAX_SAMPLES / 2;
-    if args.save.is_some() && args.paths.is_some_and(|paths| paths > most) {
-        return Err(Failure::usage(format!(
-            "a run file has room for {most} samples of each pixel; choose --paths {most} or less"
-        )));
+    if is_lit && args.save.is_some() {
+        tell(
+            "note: run files do not keep light: the file holds the picture by one ray for each pixel; `pinhole render \
+             --certify` writes a picture with light that can be judged anywhere",
+        );
     }
     let headless = wanted.open_any()?;
     self_test::check(&headless)?;
@@ -82,17 +80,10 @@ pub(crate) fn recorded(path: &Path, args: &VerifyArgs) -> Result<VerifyJob, Fail
     let (recording, structure) = done.map_err(|error| explained_alone(&headless, &error))?;
     let provenance = provenance(&headless, structure);
     let chosen = (args.paths.unwrap_or(1), args.tile_seed);
-    // Samples are kept in a temporary file beside the run file.
-    let spool = args.save.as_deref().filter(|_| is_lit).map(files::temporary).transpose()?;
-    let samples = spool.map(|spool| LitSamples::new(Box::new(spool)));
-    let mut kept = KeptLight { samples, ..KeptLight::default() };
-    let certify = || certify_light(&headless, &input, chosen, choice, kept.samples.as_mut());
-    let light = is_lit.then(certify).transpose()?;
     let scene = input.scene.clone();
-    let rendered = is_lit.then(|| judged_picture(input, headless, choice, &mut kept)).transpose()?;
-    let denoiser = kept.denoised.as_ref().map(report::judge).transpose()?;
+    let light = is_lit.then(|| judged_light(input, headless, chosen, choice)).transpose()?;
     let run = Run { scene: Arc::unwrap_or_clone(scene), recording, provenance };
-    Ok(VerifyJob { run, outputs, light, denoiser, rendered, kept })
+    Ok(VerifyJob { run, outputs, light })
 }
 
 fn provenance(headless: &Headless, structure: Structure) -> Provenance {
@@ -117,20 +108,18 @@ fn provenance(headless: &Headless, structure: Structure) -> Provenance {
 }
 
 /// Records this number of samples on an adapter, one after the other, in the middle of the film and in a random
-/// part, and checks them. `kept` stores them if they will be saved.
-pub(crate) fn certify_light(
+/// part, and checks them.
+fn certify_light(
     headless: &Headless,
     input: &Input,
     (count, tile_seed): (u32, Option<u32>),
     choice: AccelChoice,
-    kept: Option<&mut LitSamples>,
 ) -> Result<LitCertificate, Failure> {
     let Input { scene, settings, .. } = input;
     let (view, views) = (input.view(), views_of(input, input.film));
     let samples = chosen(settings.sampling.samples, count, settings.sampling.seed);
     let plan = |choice| render::plan(headless, input, &views, LayerSet::COLOR, choice);
     let tile_seed = tile_seed.unwrap_or_else(any_seed);
-    let kept = RefCell::new(kept);
     let done = with_structures(headless, choice, plan, |plan| {
         let uploaded = interrupt::on_device(|| upload(headless, scene, plan))?;
         let buffers = match uploaded {
@@ -139,9 +128,6 @@ pub(crate) fn certify_light(
         };
         let checker = Checker::new(scene).context("the checker cannot be prepared")?;
         let mut certificate = LitCertificate::default();
-        // Recording starts again with another structure.
-        kept.borrow_mut().iter_mut().for_each(|kept| kept.clear());
-        let failed = RefCell::new(None);
         let recording = "recording light";
         progress::stage(recording);
         let recorded = interrupt::on_device(|| {
@@ -149,25 +135,15 @@ pub(crate) fn certify_light(
                 interrupt::driver_rests(true);
                 progress::stage("checking light");
                 certificate.join(checker.certify_lit(recorded));
-                let added = kept.borrow_mut().as_mut().map(|kept| kept.add(recorded));
-                if let Some(Err(error)) = added {
-                    *failed.borrow_mut() = Some(error);
-                }
                 progress::stage(recording);
                 interrupt::driver_rests(false);
             };
-            let watch = &mut |_: &_| match *failed.borrow() {
-                None => interrupt::decide(),
-                Some(_) => Decision::Stop,
-            };
+            let watch = &mut |_: &_| interrupt::decide();
             [LitPart::Middle, LitPart::Random(tile_seed)].into_iter().try_for_each(|part| {
                 let request = SampleRequest { part, samples: &samples };
                 headless.record_lit(&buffers, &view, settings, request, each, watch).wait()
             })
         })?;
-        if let Some(error) = failed.take() {
-            return Err(anyhow!("the samples of the light cannot be kept: {error}").into());
-        }
         Ok(recorded.map(|()| certificate))
     })?;
     let (certificate, _) = done.map_err(|error| explained_alone(headless, &error))?;
@@ -209,14 +185,15 @@ fn chosen(all: u32, count: u32, seed: u32) -> Vec<u32> {
 /// The most samples of the picture that is judged as a whole. More would take long, and the program takes them alike.
 const PICTURE_SAMPLES: u32 = 16;
 
-/// Renders the view that is checked as `render` does, with its light but few samples, and judges every pixel of the raw
-/// picture. Keeps what the check of the denoiser and people need.
-fn judged_picture(
+/// Judges samples of the light stage by stage. Then renders the view as `render` does, with its light but few samples, and
+/// judges every pixel of the raw picture, and the removal of noise.
+fn judged_light(
     mut input: Input,
     headless: Headless,
+    chosen: (u32, Option<u32>),
     choice: AccelChoice,
-    kept: &mut KeptLight,
-) -> Result<FinishedCertificate, Failure> {
+) -> Result<JudgedLight, Failure> {
+    let stages = certify_light(&headless, &input, chosen, choice)?;
     let wanted = input.settings.sampling.samples;
     let samples = wanted.min(PICTURE_SAMPLES);
     input.settings.sampling.samples = samples;
@@ -232,17 +209,17 @@ fn judged_picture(
     let encoding = input.encoding;
     let outcome = FinishedCertificate::outcome_of_device;
     let find = |input: &mut Input, exact: &Image| witness(input, exact, &opened);
-    let certificate = certified::judge(&mut input, &encoding, &outputs, &written, outcome, &find)?;
+    let rendered = certified::judge(&mut input, &encoding, &outputs, &written, outcome, &find)?;
     progress::stage("finishing");
+    let mut denoiser = None;
     if finished.sampling.denoise {
         let mut without_lines = input.settings.clone();
         without_lines.sampling.denoise = true;
         let quiet = render::finish(image.clone(), &without_lines, GUIDES, &opened)?;
-        kept.denoised = Some([image.clone(), quiet]);
+        denoiser = Some(denoised::certify(&image, &quiet).context("the denoiser cannot be checked")?);
     }
     let image = render::finish(image, &finished, layers, &opened)?;
-    kept.shown = Some(shown(&image, &input, wanted));
-    Ok(certificate)
+    Ok(JudgedLight { stages, denoiser, rendered, shown: shown(&image, &input, wanted) })
 }
 
 /// Encodes the picture as the scene specifies, but with its background.
@@ -254,8 +231,7 @@ fn shown(image: &Image, Input { settings, encoding, .. }: &Input, wanted: u32) -
             None => encoding.display(color[i]),
         })
     });
-    let size = [image.width(), image.height()];
-    FinalPicture { size, srgb: srgb.collect(), samples: settings.sampling.samples, wanted }
+    FinalPicture { srgb: srgb.collect(), samples: settings.sampling.samples, wanted }
 }
 
 #[cfg(test)]

@@ -2,16 +2,15 @@
 
 use std::collections::BTreeMap;
 
-use anyhow::{Context, Result};
 use serde::Serialize;
 
+use crate::proof::verify::output::JudgedLight;
 use crate::render::device::AdapterReport;
 use crate::terminal::text::in_quotes;
-use pinhole::image::Image;
 use pinhole::internals::text::{one_line, whole_line};
-use pinhole::verify::denoised::{self, DenoiseCertificate};
-use pinhole::verify::finished::{FinishedCertificate, PixelVerdict};
-use pinhole::verify::run_file::{FinalPicture, Run, scene_sha256};
+use pinhole::verify::denoised::DenoiseCertificate;
+use pinhole::verify::finished::PixelVerdict;
+use pinhole::verify::run_file::{Run, scene_sha256};
 use pinhole::verify::{
     Certificate, Checker, Deviations, LitCertificate, LitOpen, LitShare, LitViolation, Outcome, Recording, StageCounts,
     UploadError, Verdict, Violation,
@@ -80,17 +79,16 @@ pub(crate) struct Picture {
 }
 
 impl<'a> Report<'a> {
-    pub(crate) fn new(
-        run: &'a Run,
-        certificate: &'a Certificate,
-        light: Option<&'a LitCertificate>,
-        denoiser: Option<&'a DenoiseCertificate>,
-    ) -> Self {
+    pub(crate) fn new(run: &'a Run, certificate: &'a Certificate, judged: Option<&'a JudgedLight>) -> Self {
         let Run { scene, recording, provenance } = run;
         let count = |verdict: &Verdict| (verdict.name(), certificate.count(*verdict));
+        let light = judged.map(|judged| &judged.stages);
+        let denoiser = judged.and_then(|judged| judged.denoiser.as_ref());
+        let rendered = judged.map(RenderedReport::new);
         let of_light = light.map_or(Outcome::Proved, LitCertificate::outcome);
         let of_denoiser = denoiser.map_or(Outcome::Proved, DenoiseCertificate::outcome);
-        let outcome = certificate.outcome().max(of_light).max(of_denoiser);
+        let of_rendered = rendered.as_ref().map_or(Outcome::Proved, |rendered| rendered.outcome);
+        let outcome = certificate.outcome().max(of_light).max(of_denoiser).max(of_rendered);
         Self {
             version: one_line(&provenance.version),
             adapter: Adapter { adapter: AdapterReport::of_run(provenance), limits: &provenance.limits },
@@ -114,7 +112,7 @@ impl<'a> Report<'a> {
             paths: light.filter(|light| !light.is_studio).map(LightReport::new),
             studio: light.filter(|light| light.is_studio).map(LightReport::new),
             denoiser: denoiser.map(|found| DenoiserReport { certificate: found, outcome: found.outcome() }),
-            rendered: None,
+            rendered,
             biased: [Some(&certificate.deviations), light.map(|light| &light.deviations)]
                 .into_iter()
                 .flatten()
@@ -127,19 +125,6 @@ impl<'a> Report<'a> {
             certificate,
             open: Vec::new(),
         }
-    }
-
-    /// Adds the verdicts about the picture that `render` makes with light.
-    pub(crate) fn judge_rendered(&mut self, judged: &FinishedCertificate, shown: &FinalPicture) {
-        self.outcome = self.outcome.max(judged.outcome_of_device());
-        self.legal = self.outcome == Outcome::Proved;
-        self.rendered = Some(RenderedReport {
-            samples: shown.samples,
-            of_samples: shown.wanted,
-            pixels: PixelVerdict::ALL.iter().map(|verdict| (verdict.name(), judged.count(*verdict))).collect(),
-            violation: judged.violations.first().map(ToString::to_string),
-            outcome: judged.outcome_of_device(),
-        });
     }
 
     /// The check of light, if there is one.
@@ -340,15 +325,20 @@ pub(crate) struct RenderedReport {
 }
 
 impl RenderedReport {
+    fn new(JudgedLight { rendered, shown, .. }: &JudgedLight) -> Self {
+        Self {
+            samples: shown.samples,
+            of_samples: shown.wanted,
+            pixels: PixelVerdict::ALL.iter().map(|verdict| (verdict.name(), rendered.count(*verdict))).collect(),
+            violation: rendered.violations.first().map(ToString::to_string),
+            outcome: rendered.outcome_of_device(),
+        }
+    }
+
     fn line(&self) -> String {
         let Self { samples, of_samples, pixels, .. } = self;
         let count = |verdict: &PixelVerdict| format!("{} {}", pixels[verdict.name()], verdict.name());
         let counts: Vec<_> = PixelVerdict::ALL.iter().map(count).collect();
         format!("picture of render, {samples} of {of_samples} samples: pixels: {}\n", counts.join(", "))
     }
-}
-
-/// Judges the device's denoised version of a noisy picture.
-pub(crate) fn judge([noisy, quiet]: &[Image; 2]) -> Result<DenoiseCertificate> {
-    denoised::certify(noisy, quiet).context("the denoiser cannot be checked")
 }
