@@ -36,7 +36,7 @@ pub(super) fn run(args: &SplitArgs) -> Result<(), Failure> {
     let job = args.render.output.clone().unwrap_or_default();
     let job: PathBuf = job.components().collect();
     let above = check_new(&job)?;
-    let arguments = std::env::args_os().map(|word| {
+    let arguments = crate::words().into_iter().map(|word| {
         word.into_string().map_err(|word| Failure::usage(format!("{}: this is not UTF-8 text", word.to_string_lossy())))
     });
     let arguments = arguments.collect::<Result<Vec<String>, _>>()?;
