@@ -50,7 +50,8 @@ pub(crate) fn scene(folder: TempDir) -> Target {
         seeds.extend(files.map(str::to_owned));
     }
     let data = data();
-    of_text(folder, seeds, move |text| read_scene(text, &data))
+    // Each is read several times, and written.
+    Target { tries: 40_000, ..of_text(folder, seeds, move |text| read_scene(text, &data)) }
 }
 
 fn read_scene(text: &str, data: &Dataset) -> Result<(), String> {

@@ -51,7 +51,7 @@ fn target(
     // The first command starts the threads.
     rendered(&path, "a.png", "");
     // A command takes a thousand times as long as a reader.
-    Target { tries: 4000, ..Target::new(folder, seeds(&path), move |bytes| read(&path, bytes)) }
+    Target { tries: 2400, ..Target::new(folder, seeds(&path), move |bytes| read(&path, bytes)) }
 }
 
 /// Runs commands that must succeed, and reads the file that they write.
