@@ -15,6 +15,7 @@ use command_line::{Arguments, Command};
 use crate::terminal::explain::explain;
 use crate::terminal::failure::Failure;
 use crate::terminal::progress::tell;
+use pinhole::internals::text::whole_line;
 
 #[cfg(feature = "gpu")]
 mod bench;
@@ -129,5 +130,5 @@ pub fn run_command(words: Vec<OsString>) -> Result<(), String> {
     if let Ok(mut given) = WORDS.lock() {
         *given = words;
     }
-    execute(arguments.command).map_err(|failure| failure.message())
+    execute(arguments.command).map_err(|failure| whole_line(&failure.message()))
 }
