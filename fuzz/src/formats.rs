@@ -20,11 +20,11 @@ pub(crate) fn target(format: &'static Format, folder: TempDir) -> Target {
     }
     let (seeds, options): (Vec<_>, Vec<_>) = seeds.into_iter().unzip();
     let mut distinct: Vec<Options> = Vec::new();
-    options.into_iter().for_each(|one| {
+    for one in options {
         if !distinct.contains(&one) {
-            distinct.push(one)
+            distinct.push(one);
         }
-    });
+    }
     let file = folder.path().join("file");
     let read = move |bytes: &[u8]| distinct.iter().try_for_each(|options| read_all(format, bytes, options, &file));
     Target::new(folder, seeds, read)

@@ -36,8 +36,11 @@ pub struct Target {
     _folder: TempDir,
 }
 
+/// The name of a kind, and what makes its target.
+type Named = (&'static str, fn(TempDir) -> Target);
+
 /// The kinds of files beside the formats of spheres.
-const OTHERS: [(&str, fn(TempDir) -> Target); 10] = [
+const OTHERS: [Named; 10] = [
     ("scene", figures::scene),
     ("camera-path", figures::camera_path),
     ("selection", figures::selection),

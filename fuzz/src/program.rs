@@ -95,7 +95,7 @@ pub(crate) fn certificate(folder: TempDir) -> Target {
             "--style illustration --camera orthographic --background teal --outline 2 --bits 8",
         ];
         let text = |flags: &str| {
-            let picture = pictures::read(&rendered(folder, "a.png", &format!("--certify {flags}").trim())).unwrap();
+            let picture = pictures::read(&rendered(folder, "a.png", &format!("--certify {flags}"))).unwrap();
             let mut text = picture.certificate.unwrap().into_bytes();
             seals::put(&mut text, "samples-sha256 ", &samples_digest(SIZE, &SAMPLES));
             text.truncate(text.len() - "sha256 \n".len() - DIGITS);
