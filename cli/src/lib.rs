@@ -7,7 +7,6 @@
 
 use std::ffi::OsString;
 use std::process::ExitCode;
-use std::sync::Mutex;
 
 use clap::Parser;
 use command_line::{Arguments, Command};
@@ -111,15 +110,6 @@ fn execute(command: Command) -> Result<(), Failure> {
     }
 }
 
-/// The words that [`run_command`] was given, instead of those of the process.
-static WORDS: Mutex<Vec<OsString>> = Mutex::new(Vec::new());
-
-/// The words of the command line, with the name of the program.
-fn words() -> Vec<OsString> {
-    let given = WORDS.lock().map(|words| words.clone()).unwrap_or_default();
-    if given.is_empty() { std::env::args_os().collect() } else { given }
-}
-
 /// Runs a command of the program in this process, for `fuzz`, and returns the message of its failure.
 ///
 /// # Errors
@@ -127,7 +117,7 @@ fn words() -> Vec<OsString> {
 #[doc(hidden)]
 pub fn run_command(words: Vec<OsString>) -> Result<(), String> {
     let arguments = Arguments::try_parse_from(&words).map_err(|error| error.to_string())?;
-    if let Ok(mut given) = WORDS.lock() {
+    if let Ok(mut given) = terminal::WORDS.lock() {
         *given = words;
     }
     execute(arguments.command).map_err(|failure| whole_line(&failure.message()))

@@ -6,6 +6,8 @@
     reason = "tests; where floats are compared, the answer is exact"
 )]
 
+#[path = "../support/recorded.rs"]
+mod recorded;
 #[path = "../support/mod.rs"]
 mod support;
 

@@ -19,7 +19,7 @@ use pinhole::{
 };
 use sha2::{Digest, Sha256};
 
-use crate::support::recorded::{cut, recorded};
+use crate::recorded::{cut, recorded};
 use crate::support::shaded;
 use crate::verify::uploaded;
 

@@ -9,7 +9,6 @@ pub(crate) mod legal_cameras;
 pub(crate) mod legal_device;
 pub(crate) mod maps;
 pub(crate) mod random_light;
-pub(crate) mod recorded;
 pub(crate) mod spheres;
 mod view;
 
