@@ -5,13 +5,16 @@
 
 #![allow(rustdoc::broken_intra_doc_links, reason = "the comments of arguments are their help texts, not Markdown")]
 
+use std::ffi::OsString;
 use std::process::ExitCode;
 
 use clap::Parser;
 use command_line::{Arguments, Command};
 
 use crate::terminal::explain::explain;
+use crate::terminal::failure::Failure;
 use crate::terminal::progress::tell;
+use pinhole::internals::text::whole_line;
 
 #[cfg(feature = "gpu")]
 mod bench;
@@ -78,7 +81,19 @@ fn run() -> ExitCode {
             return explain(&error, &words);
         }
     };
-    let result = terminal::interrupt::install().and_then(|()| match arguments.command {
+    let result = terminal::interrupt::install().and_then(|()| execute(arguments.command));
+    terminal::progress::clear();
+    match result {
+        Ok(()) => ExitCode::SUCCESS,
+        Err(failure) => {
+            tell(&failure);
+            failure.exit_code()
+        }
+    }
+}
+
+fn execute(command: Command) -> Result<(), Failure> {
+    match command {
         Command::Render(args) => commands::render::run(&args),
         Command::Verify(args) => proof::verify::run(&args),
         Command::Certify(args) => proof::certify::run(&args),
@@ -92,13 +107,18 @@ fn run() -> ExitCode {
         Command::Generate(args) => commands::generate::run(&args),
         Command::Info(args) => commands::info::run(&args),
         Command::View(args) => commands::view::run(&args),
-    });
-    terminal::progress::clear();
-    match result {
-        Ok(()) => ExitCode::SUCCESS,
-        Err(failure) => {
-            tell(&failure);
-            failure.exit_code()
-        }
     }
+}
+
+/// Runs a command of the program in this process, for `fuzz`, and returns the message of its failure.
+///
+/// # Errors
+/// Returns the line that the program would show, or several lines if the words are not those of a command.
+#[doc(hidden)]
+pub fn run_command(words: Vec<OsString>) -> Result<(), String> {
+    let arguments = Arguments::try_parse_from(&words).map_err(|error| error.to_string())?;
+    if let Ok(mut given) = terminal::WORDS.lock() {
+        *given = words;
+    }
+    execute(arguments.command).map_err(|failure| whole_line(&failure.message()))
 }

@@ -2,12 +2,11 @@
 
 use std::collections::BTreeMap;
 
-use fastrand::Rng;
 use pinhole::camera::film::YAxis;
 use pinhole::camera::{Camera, OrthographicCamera, PinholeCamera, Pose};
 use pinhole::image::NO_ID;
 use pinhole::verify::run_file::{self, Provenance, RunFileError};
-use pinhole::verify::{Checker, Outcome, PlainRender, Recording, RequestedCamera, TracedPixel, TracedRay};
+use pinhole::verify::{PlainRender, Recording, RequestedCamera, TracedPixel, TracedRay};
 use pinhole::{
     Appearance, Colors, Film, LayerSet, LinearRgb, Material, Scene, Shading, Sphere, SphereArray, SurfaceProperties,
     View, cpu,
@@ -272,32 +271,6 @@ fn every_byte_that_is_another_is_noticed() {
     let mut altered = bytes;
     *altered.last_mut().unwrap() ^= 1;
     assert_eq!(run_file::read(&altered).unwrap_err(), RunFileError::Altered);
-}
-
-/// The checker judges any answers of a device, and none of them make it fail.
-#[test]
-fn noise_with_a_right_digest_is_judged_or_refused() {
-    let bytes = small();
-    let start = 8 + bytes_of_header(&bytes);
-    let mut random = Rng::with_seed(11);
-    let mut read = 0;
-    for _ in 0..4000 {
-        let mut altered = bytes.clone();
-        // Some of the places are in the header.
-        for _ in 0..random.usize(1..6) {
-            let first = if random.bool() { start } else { 0 };
-            let place = random.usize(first..altered.len());
-            let length = random.usize(1..=8).min(altered.len() - place);
-            let filled = [0, 0xff, 0x7f, random.u8(..)][random.usize(..4)];
-            altered[place..place + length].fill(filled);
-        }
-        if let Ok(run) = run_file::read(&signed(altered)) {
-            read += 1;
-            let certificate = Checker::new(&run.scene).unwrap().certify(&run.recording);
-            assert_eq!(certificate.outcome(), Outcome::Violated);
-        }
-    }
-    assert!(read > 100, "{read}");
 }
 
 #[test]

@@ -16,7 +16,7 @@ use crate::output::files::{name_all, unnamed};
 use crate::terminal::failure::Failure;
 use crate::terminal::progress::{self, tell};
 use crate::terminal::text::in_quotes;
-use crate::terminal::threads;
+use crate::terminal::{threads, words};
 use pinhole::image::{Layer, LayerSet};
 use pinhole::internals::text::is_control;
 
@@ -36,7 +36,7 @@ pub(super) fn run(args: &SplitArgs) -> Result<(), Failure> {
     let job = args.render.output.clone().unwrap_or_default();
     let job: PathBuf = job.components().collect();
     let above = check_new(&job)?;
-    let arguments = std::env::args_os().map(|word| {
+    let arguments = words().into_iter().map(|word| {
         word.into_string().map_err(|word| Failure::usage(format!("{}: this is not UTF-8 text", word.to_string_lossy())))
     });
     let arguments = arguments.collect::<Result<Vec<String>, _>>()?;

@@ -1,4 +1,7 @@
-//! The process and its terminal: output, failures, signals, threads, memory and time.
+//! The process and its terminal: words, output, failures, signals, threads, memory and time.
+
+use std::ffi::OsString;
+use std::sync::Mutex;
 
 pub(crate) mod explain;
 pub(crate) mod failure;
@@ -9,6 +12,15 @@ pub(crate) mod profile;
 pub(crate) mod progress;
 pub(crate) mod text;
 pub(crate) mod threads;
+
+/// The words of a command that another program runs in its own process.
+pub(crate) static WORDS: Mutex<Vec<OsString>> = Mutex::new(Vec::new());
+
+/// The words of the command line, with the name of the program: [`WORDS`], or else those of the process.
+pub(crate) fn words() -> Vec<OsString> {
+    let given = WORDS.lock().map(|words| words.clone()).unwrap_or_default();
+    if given.is_empty() { std::env::args_os().collect() } else { given }
+}
 
 /// Without devices, phases are not measured.
 #[cfg(not(feature = "gpu"))]

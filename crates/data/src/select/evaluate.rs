@@ -57,7 +57,7 @@ impl<'a> Data<'a> {
     }
 
     fn error(&self, operand: &Operand, problem: impl Into<String>) -> SelectError {
-        error_at(self.text, operand.character, problem)
+        error_at(self.text, operand.at, problem)
     }
 
     fn side(&self, operand: &Operand) -> Result<Side<'a>, SelectError> {

@@ -28,6 +28,7 @@ use std::fmt;
 use std::str::FromStr;
 
 use crate::load::{Column, Dataset};
+use pinhole::internals::text::one_line;
 use pinhole::scene::sphere_array::SphereArray;
 
 /// An expression that chooses the spheres to keep.
@@ -90,7 +91,7 @@ impl Selection {
         let (kept, of) = (is_kept.iter().filter(|kept| **kept).count(), is_kept.len());
         if kept == 0 && of > 0 {
             let hint = notes.first().map_or(String::new(), |note| format!("; {note}"));
-            return Err(SelectError::Nothing { expression: self.text.clone(), of, hint });
+            return Err(SelectError::Nothing { expression: one_line(&self.text), of, hint });
         }
         loaded.keep(&is_kept);
         Ok(KeptSpheres { kept, of, notes })

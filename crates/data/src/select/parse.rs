@@ -27,8 +27,8 @@ pub(super) struct Comparison {
 #[derive(Clone, Debug)]
 pub(super) struct Operand {
     pub(super) value: Value,
-    /// Position of its first character, from 1.
-    pub(super) character: usize,
+    /// Offset of its first byte.
+    pub(super) at: usize,
 }
 
 #[derive(Clone, Debug)]
@@ -100,7 +100,8 @@ pub(super) fn parse(text: &str) -> Result<Expression, SelectError> {
     }
 }
 
-pub(super) fn error_at(text: &str, character: usize, problem: impl Into<String>) -> SelectError {
+pub(super) fn error_at(text: &str, at: usize, problem: impl Into<String>) -> SelectError {
+    let character = text.get(..at).unwrap_or_default().chars().count() + 1;
     SelectError::At { expression: one_line(text), character, problem: problem.into() }
 }
 
@@ -124,13 +125,8 @@ impl<'a> Parser<'a> {
         trimmed
     }
 
-    /// The number of the next character, from 1.
-    fn character(&self) -> usize {
-        self.text.get(..self.at).unwrap_or_default().chars().count() + 1
-    }
-
     fn error(&self, problem: impl Into<String>) -> SelectError {
-        error_at(self.text, self.character(), problem)
+        error_at(self.text, self.at, problem)
     }
 
     fn wanted(&mut self, wanted: &'static str) -> SelectError {
@@ -247,7 +243,7 @@ impl<'a> Parser<'a> {
     fn operand(&mut self) -> Result<Operand, SelectError> {
         const WANTED: &str = "a column, a number or a text";
         let rest = self.rest();
-        let character = self.character();
+        let at = self.at;
         let value = match rest.chars().next() {
             Some(mark @ ('"' | '\'')) => Value::Text(self.quoted(mark)?.to_owned()),
             Some('`') => Value::Column(self.quoted('`')?.to_owned()),
@@ -262,7 +258,7 @@ impl<'a> Parser<'a> {
                 Value::Word(word.to_owned())
             }
         };
-        Ok(Operand { value, character })
+        Ok(Operand { value, at })
     }
 
     /// Takes the text between two equal marks, the first of which comes next.

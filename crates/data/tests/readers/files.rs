@@ -1,20 +1,16 @@
-//! Files of spheres and their contents, files that are refused, and damaged files of every format.
+//! Files of spheres and their contents, and files that are refused.
 
 use std::io::Write as _;
 use std::path::{Path, PathBuf};
 
-use fastrand::Rng;
 use flate2::Compression;
 use flate2::write::GzEncoder;
 use pinhole::scene::sphere_array::SphereArray;
 use pinhole::{LinearRgb, Sphere};
-use pinhole_data::load::{self, ColumnValues, Dataset, FORMATS, Format, Labels, Options};
+use pinhole_data::load::{self, ColumnValues, Dataset, FORMATS, Labels, Options};
 use tempfile::TempDir;
 
 use crate::cases::{Case, compare};
-use crate::damage::{SLOW, damaged, read_all, read_bytes};
-use crate::effort::tries;
-use crate::seeds;
 
 fn folder(name: &str) -> PathBuf {
     Path::new(env!("CARGO_MANIFEST_DIR")).join("tests/files").join(name)
@@ -114,21 +110,6 @@ fn written(loaded: &Dataset) -> String {
     lines.join("\n") + "\n"
 }
 
-#[test]
-fn every_format_has_good_files() {
-    let folder = TempDir::new().unwrap();
-    for format in FORMATS {
-        let seeds = seeds::of(format, folder.path());
-        assert!(!seeds.is_empty(), "{}: give it a file in tests/files/good", format.name);
-        for (index, seed) in seeds.into_iter().enumerate() {
-            let options = seed.options.with_format(format);
-            let loaded = load::from_bytes(&seed.bytes, "", &options);
-            let loaded = loaded.unwrap_or_else(|e| panic!("{} {index}: {e}", format.name));
-            assert!(!loaded.spheres.is_empty(), "{} {index}", format.name);
-        }
-    }
-}
-
 /// Zeros that are compressed are refused by the first of them, and what is no regular file before it is opened.
 #[test]
 fn bombs_and_special_files_are_refused_at_once() {
@@ -146,45 +127,5 @@ fn bombs_and_special_files_are_refused_at_once() {
         let special = if cfg!(unix) { Path::new("/dev/zero") } else { folder.path() };
         let error = load::open(special, &Options::default().with_format(format)).unwrap_err().to_string();
         assert!(error.ends_with(": cannot be read: this is not a regular file; copy it to a file"), "{error}");
-    }
-}
-
-#[test]
-fn damaged_files_end_with_spheres_or_one_line() {
-    // Two threads share the formats, which take about the same time each.
-    std::thread::scope(|scope| {
-        for first in 0..2 {
-            scope.spawn(move || FORMATS.iter().skip(first).step_by(2).for_each(read_damaged));
-        }
-    });
-}
-
-/// Reads files of one format, cut off at every length and damaged at random.
-fn read_damaged(format: &'static Format) {
-    let folder = TempDir::new().unwrap();
-    let seeds = seeds::of(format, folder.path());
-    for seed in &seeds {
-        for end in (0..seed.bytes.len()).filter(|end| *end < 2048 || end % 7 == 0) {
-            let mut random = Rng::with_seed(end as u64);
-            read_bytes(format, &seed.bytes[..end], &seed.options, &mut random)
-                .unwrap_or_else(|e| panic!("{}, cut at {end}: {e}", format.name));
-        }
-    }
-    let each = tries(if format.has_frames() { 64_000 } else { 240_000 });
-    for number in 0..u64::from(each) {
-        let mut random = Rng::with_seed(number);
-        let seed = &seeds[number as usize % seeds.len()];
-        let other = &seeds[random.usize(0..seeds.len())].bytes;
-        let bytes = damaged(&seed.bytes, other, &mut random);
-        // Reading frames from files in many ways takes ten times as long, so it is done rarely.
-        let taken = if random.u8(0..20) == 0 {
-            let file = folder.path().join("file");
-            read_all(format, &bytes, &seed.options, &file, &mut random)
-        } else {
-            read_bytes(format, &bytes, &seed.options, &mut random)
-        };
-        let taken = taken.unwrap_or_else(|e| panic!("{}, input {number}: {e}", format.name));
-        // A busy machine may be slow, but a reader that hangs is slower. The long run in `benches` measures times.
-        assert!(taken < 60 * SLOW, "{}, input {number}: {taken:?}", format.name);
     }
 }

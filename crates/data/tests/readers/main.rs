@@ -1,4 +1,4 @@
-//! Tests of the readers on files that are right, wrong and damaged.
+//! Tests of the readers on files that are right and wrong. `fuzz` damages others.
 #![allow(
     clippy::unwrap_used,
     clippy::panic,
@@ -12,13 +12,6 @@ mod arrays;
 mod binary_files;
 #[path = "../../../../tests/support/cases.rs"]
 mod cases;
-#[path = "../support/damage.rs"]
-mod damage;
-#[path = "../../../../tests/support/effort.rs"]
-#[expect(dead_code, reason = "other tests use the rest")]
-mod effort;
-#[path = "../support/seeds.rs"]
-mod seeds;
 
 mod binary;
 mod files;

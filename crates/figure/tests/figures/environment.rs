@@ -522,14 +522,7 @@ fn damaged_files_do_not_panic() {
 }
 
 #[test]
-fn noise_does_not_panic() {
-    let mut random = fastrand::Rng::with_seed(9);
-    for _ in 0..2000 {
-        let noise: Vec<u8> = (0..random.usize(..300)).map(|_| random.u8(..)).collect();
-        let _ = survives(&[b"#?", &noise[..]].concat());
-        let _ = survives(&[HEADER.replace("+X 2", "+X 20").as_bytes(), &noise].concat());
-        let _ = survives(&[&[0x76, 0x2f, 0x31, 0x01, 2, 0, 0, 0][..], &noise].concat());
-    }
+fn many_empty_runs_are_refused() {
     // Markers of empty runs, which multiply the length of the next run.
     let markers = [&[[7; 4]; 1][..], &[[1, 1, 1, 0]; 30]].concat();
     assert!(survives(&flat_hdr(HEADER, &markers)).is_err());

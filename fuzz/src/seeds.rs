@@ -1,6 +1,6 @@
 //! Small good files of every format that can be read, which the fuzzer damages.
 //!
-//! A new format needs files in `tests/files/good`, or a test fails. Files of DCD, TRR and XTC need a topology, and are
+//! A new format needs files in `crates/data/tests/files/good`, or a test fails. Files of DCD, TRR and XTC need a topology, and are
 //! written by `binary_files`.
 
 use std::path::Path;
@@ -9,12 +9,8 @@ use pinhole_data::load::{Format, Options};
 
 use crate::binary_files::{dcd as charmm, gromacs, topology};
 
-/// A valid file.
-pub(crate) struct Seed {
-    pub(crate) bytes: Vec<u8>,
-    /// The options for reading the file.
-    pub(crate) options: Options,
-}
+/// A valid file, and the options for reading it.
+pub(crate) type Seed = (Vec<u8>, Options);
 
 /// Files that need the names of their columns, or `radius`.
 const NEEDS: [(&str, &str); 5] = [
@@ -27,7 +23,7 @@ const NEEDS: [(&str, &str); 5] = [
 
 /// The names and bytes of the good files of a format, by their extensions.
 fn files(format: &Format) -> Vec<(String, Vec<u8>)> {
-    let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("tests/files/good");
+    let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("../crates/data/tests/files/good");
     let extensions = if format.name == "raw-f32x4" { &["bin"][..] } else { format.extensions };
     let names = std::fs::read_dir(&folder).unwrap().map(|entry| entry.unwrap().file_name());
     let mut names: Vec<String> = names.map(|name| name.into_string().unwrap()).collect();
@@ -55,10 +51,9 @@ pub(crate) fn of(format: &Format, folder: &Path) -> Vec<Seed> {
             columns => options.columns = columns.split_terminator(' ').map(str::to_owned).collect(),
         }
         if let (Ok(text), "xyz" | "mmcif") = (str::from_utf8(&bytes), format.name) {
-            let bytes = text.replace('\n', "\r\n").into_bytes();
-            seeds.push(Seed { bytes, options: options.clone() });
+            seeds.push((text.replace('\n', "\r\n").into_bytes(), options.clone()));
         }
-        seeds.push(Seed { bytes, options });
+        seeds.push((bytes, options));
     }
     seeds
 }
@@ -88,5 +83,5 @@ fn xtc(folder: &Path) -> Vec<Seed> {
 }
 
 fn with_topology(bytes: Vec<u8>, folder: &Path, atoms: usize) -> Seed {
-    Seed { bytes, options: Options::default().with_topology(topology(folder, atoms)) }
+    (bytes, Options::default().with_topology(topology(folder, atoms)))
 }
