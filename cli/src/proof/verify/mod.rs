@@ -5,8 +5,8 @@ use std::fmt::Display;
 use anyhow::{Context, anyhow};
 
 use crate::proof::verify::args::VerifyArgs;
-use crate::proof::verify::output::{JudgedLight, VerifyJob};
-use crate::proof::verify::report::{Report, open_pixels};
+use crate::proof::verify::output::VerifyJob;
+use crate::proof::verify::report::{JudgedLight, Report, open_pixels};
 use crate::terminal::failure::Failure;
 use crate::terminal::progress::{self, answer};
 use pinhole::verify::denoised::DenoiseCertificate;

@@ -10,14 +10,12 @@ use crate::output::files::{
 };
 use crate::proof::verify::args::VerifyArgs;
 use crate::proof::verify::page::page;
-use crate::proof::verify::report::Report;
+use crate::proof::verify::report::{JudgedLight, Report};
 use crate::terminal::failure::Failure;
 use crate::terminal::text::json;
 use crate::terminal::{progress, threads};
-use pinhole::verify::denoised::DenoiseCertificate;
-use pinhole::verify::finished::FinishedCertificate;
+use pinhole::verify::Certificate;
 use pinhole::verify::run_file::{self, Run};
-use pinhole::verify::{Certificate, LitCertificate};
 
 /// A recording to check, and the outputs to write.
 pub(crate) struct VerifyJob {
@@ -25,29 +23,6 @@ pub(crate) struct VerifyJob {
     pub(crate) outputs: VerifyOutputs,
     /// The light of a scene with lighting, if it was rendered now.
     pub(crate) light: Option<JudgedLight>,
-}
-
-/// The light of a picture, and what was found of it.
-#[cfg_attr(not(feature = "gpu"), expect(dead_code, reason = "light is judged where it is rendered"))]
-pub(crate) struct JudgedLight {
-    /// The certificate of samples, stage by stage.
-    pub(crate) stages: LitCertificate,
-    /// The certificate of the denoiser, if the scene asks for it.
-    pub(crate) denoiser: Option<DenoiseCertificate>,
-    /// The verdicts about the picture that `render` makes.
-    pub(crate) rendered: FinishedCertificate,
-    /// The picture to show.
-    pub(crate) shown: FinalPicture,
-}
-
-/// A lit picture as people see it. It is not judged.
-pub(crate) struct FinalPicture {
-    /// The pixels in sRGB with 8 bits, row by row from the top, as exposure and tone curve make them.
-    pub(crate) srgb: Vec<[u8; 3]>,
-    /// The number of samples of each pixel.
-    pub(crate) samples: u32,
-    /// The number of samples that the scene asks for.
-    pub(crate) wanted: u32,
 }
 
 /// Reads a run file.

@@ -8,8 +8,7 @@ use anyhow::{Context, Result};
 use rayon::prelude::*;
 use serde::Serialize;
 
-use crate::proof::verify::output::FinalPicture;
-use crate::proof::verify::report::Report;
+use crate::proof::verify::report::{FinalPicture, Report};
 use pinhole::LinearRgb;
 use pinhole::image::NO_ID;
 use pinhole::image::color::to_srgb8;

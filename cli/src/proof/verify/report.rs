@@ -4,17 +4,39 @@ use std::collections::BTreeMap;
 
 use serde::Serialize;
 
-use crate::proof::verify::output::JudgedLight;
 use crate::render::device::AdapterReport;
 use crate::terminal::text::in_quotes;
 use pinhole::internals::text::{one_line, whole_line};
 use pinhole::verify::denoised::DenoiseCertificate;
-use pinhole::verify::finished::PixelVerdict;
+use pinhole::verify::finished::{FinishedCertificate, PixelVerdict};
 use pinhole::verify::run_file::{Run, scene_sha256};
 use pinhole::verify::{
     Certificate, Checker, Deviations, LitCertificate, LitOpen, LitShare, LitViolation, Outcome, Recording, StageCounts,
     UploadError, Verdict, Violation,
 };
+
+/// The light of a picture, and what was found of it.
+#[cfg_attr(not(feature = "gpu"), expect(dead_code, reason = "light is judged where it is rendered"))]
+pub(crate) struct JudgedLight {
+    /// The certificate of samples, stage by stage.
+    pub(crate) stages: LitCertificate,
+    /// The certificate of the denoiser, if the scene asks for it.
+    pub(crate) denoiser: Option<DenoiseCertificate>,
+    /// The verdicts about the picture that `render` makes.
+    pub(crate) rendered: FinishedCertificate,
+    /// The picture to show.
+    pub(crate) shown: FinalPicture,
+}
+
+/// A lit picture as people see it. It is not judged.
+pub(crate) struct FinalPicture {
+    /// The pixels in sRGB with 8 bits, row by row from the top, as exposure and tone curve make them.
+    pub(crate) srgb: Vec<[u8; 3]>,
+    /// The number of samples of each pixel.
+    pub(crate) samples: u32,
+    /// The number of samples that the scene asks for.
+    pub(crate) wanted: u32,
+}
 
 /// The JSON document.
 #[derive(Serialize)]
