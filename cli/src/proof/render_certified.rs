@@ -56,7 +56,7 @@ pub(crate) fn run(
 }
 
 /// Light that the device finds, where it is known to be legal.
-#[cfg_attr(not(feature = "gpu"), expect(clippy::unnecessary_wraps, reason = "devices fail"))]
+#[cfg_attr(not(feature = "gpu"), expect(unused_variables, clippy::unnecessary_wraps, reason = "there is no device"))]
 pub(crate) fn witness(input: &mut Input, exact: &Image, opened: &OpenDevice) -> Result<Option<Image>, Failure> {
     match opened {
         #[cfg(feature = "gpu")]
