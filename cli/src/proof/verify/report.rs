@@ -16,7 +16,6 @@ use pinhole::verify::{
 };
 
 /// The light of a picture, and what was found of it.
-#[cfg_attr(not(feature = "gpu"), expect(dead_code, reason = "light is judged where it is rendered"))]
 pub(crate) struct JudgedLight {
     /// The certificate of samples, stage by stage.
     pub(crate) stages: LitCertificate,
