@@ -376,7 +376,7 @@ fn errors_point_at_their_place() {
     assert!(selected(&deep).unwrap_err().to_string().contains("parentheses lie in more than 100"));
     assert_eq!(selected(&format!("{} x == 1", "not ".repeat(100_001))).unwrap().len(), 5);
     assert_eq!(selected(&format!("{}x == 1", "x == 1 or ".repeat(100_000))).unwrap().len(), 1);
-    let nothing = selected("x == 1\nand x == 2").unwrap_err().to_string();
+    let nothing = "x == 1\nand x == 2".parse::<Selection>().unwrap().apply(&mut loaded()).unwrap_err().to_string();
     assert_eq!(nothing, "`x == 1 and x == 2` selects none of the 6 spheres");
 }
 
