@@ -25,6 +25,9 @@ pub const LEAST_EXACT: f64 = 0.99;
 /// The largest share of wide pixels in a picture that is proved.
 pub const MOST_WIDE: f64 = 0.001;
 
+/// The number of pixels that may be followed with intervals in any picture.
+const MOST_FOLLOWED: usize = 2000;
+
 /// The verdict about a pixel of a finished picture.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub enum PixelVerdict {
@@ -34,7 +37,7 @@ pub enum PixelVerdict {
     Legal,
     /// Rounding may lead there, but also to many other values.
     Wide,
-    /// It differs, and nothing says whether rounding may lead there.
+    /// It differs, and nothing says whether rounding may lead there, or too many pixels differ to say it of all.
     Open,
     /// Rounding cannot lead there.
     Violated,
@@ -222,7 +225,9 @@ impl Checker<'_> {
         let Some(View { film, .. }) = views.first() else { return Ok(FinishedCertificate::default()) };
         let [width, height] = [film.width(), film.height()];
         let size = [width * views.len() as u32, height];
-        picture.check(size)?;
+        for View { film, .. } in views {
+            picture.check([film.width() * views.len() as u32, film.height()])?;
+        }
         exact.check(size)?;
         let annotated = request.annotated();
         let by_intervals = settings.primary().filter(|_| views.len() == 1 && annotated.is_none());
@@ -235,6 +240,14 @@ impl Checker<'_> {
         let differs = |index: usize| picture.difference(&exact, index).is_some();
         let parts = map_parts(ranges(count, CHUNK), |range| range.filter(|index| differs(*index)).collect::<Vec<_>>());
         let different = parts.concat();
+        // If too many pixels differ for a proof, a part of them is followed, which finds what is wrong.
+        let most = MOST_FOLLOWED.max(((1.0 - LEAST_EXACT) * count as f64) as usize);
+        let is_followed = |at: usize| match (different.len() > most, settings.sampling.denoise) {
+            (false, _) => true,
+            // What is followed for a pixel serves those beside it.
+            (true, true) => at.abs_diff(different.len() / 2) < most / 2,
+            (true, false) => at.is_multiple_of(different.len().div_ceil(most)),
+        };
         let mut ranges = vec![None; different.len()];
         if legal.is_none() {
             for (eye, view) in views.iter().enumerate() {
@@ -242,7 +255,7 @@ impl Checker<'_> {
                 let [first, width] = [eye * width as usize, width as usize];
                 let of_eye = different.iter().enumerate().filter_map(|(at, index)| {
                     let [i, j] = [index % size[0] as usize, index / size[0] as usize];
-                    (first..first + width).contains(&i).then(|| (at, j * width + i - first))
+                    ((first..first + width).contains(&i) && is_followed(at)).then(|| (at, j * width + i - first))
                 });
                 let (places, indices): (Vec<usize>, Vec<usize>) = of_eye.unzip();
                 for (at, light) in places.into_iter().zip(self.legal_light(view, settings, &indices)) {
