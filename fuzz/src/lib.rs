@@ -62,7 +62,7 @@ impl Target {
         seeds: Vec<Vec<u8>>,
         read: impl Fn(&[u8]) -> Result<(), String> + Send + Sync + 'static,
     ) -> Self {
-        Self { seeds, tries: 160_000, read: Box::new(read), _folder: folder }
+        Self { seeds, tries: 40_000, read: Box::new(read), _folder: folder }
     }
 
     /// Makes the target of this name.
