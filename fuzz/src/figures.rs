@@ -1,4 +1,4 @@
-//! What figures read: scene files, camera paths, selections and images of skies.
+//! The files that figures read: scene files, camera paths, selections and images of skies.
 
 use std::io::Cursor;
 use std::path::Path;

@@ -1,5 +1,5 @@
-//! What the program reads: pictures with certificates, answers of other renderers, run files, files of bricks, and the
-//! folders of jobs. Digests are made to fit, so that they do not hide what comes after them.
+//! The files that the program reads: pictures with certificates, answers of other renderers, run files, files of bricks,
+//! and the folders of jobs. Digests are made to fit, so that they do not hide what comes after them.
 
 use std::fs;
 use std::path::Path;
@@ -21,7 +21,7 @@ use crate::{Target, checked, seals};
 
 const SCENE: &str = "data = 'data.csv'\n[film]\nwidth = 3\nheight = 2\n";
 
-/// What stands for the folder in good files, so that they are the same in all folders.
+/// The text in the place of the folder in good files, so that they are the same in all folders.
 const FOLDER: &str = "@@";
 
 const PART: &str = "job/parts/000000.part";
@@ -35,7 +35,7 @@ fn run<const N: usize>(folder: &Path, commands: [&str; N]) -> Result<(), String>
     })
 }
 
-/// The same for commands that may fail.
+/// Runs commands of the program that may fail.
 fn check<const N: usize>(folder: &Path, commands: [&str; N]) -> Result<(), String> {
     checked(run(folder, commands)).map(drop)
 }

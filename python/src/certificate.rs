@@ -29,7 +29,7 @@ impl CertificateData {
         self.certificate.outcome().name()
     }
 
-    /// Whether the outcome is proved: every pixel is legal, and at most 1 % have other legal answers.
+    /// Returns true if the outcome is proved: every pixel is legal, and at most 1 % have other legal answers.
     #[getter]
     fn is_legal(&self) -> bool {
         self.certificate.is_legal()

@@ -139,7 +139,7 @@ pub struct FinishedRequest<'a> {
     /// The picture of the CPU reference with the same settings, finished and encoded by the same code, but for what is
     /// drawn over it.
     pub exact: &'a WrittenPicture<'a>,
-    /// What is drawn over encoded samples, such as labels. It may depend on the samples.
+    /// A function that draws over encoded samples, such as labels. They may decide what it draws.
     pub annotate: Option<&'a Annotate<'a>>,
 }
 
@@ -162,7 +162,7 @@ impl FinishedRequest<'_> {
     }
 
     /// Draws over pixels with these indices and ranges.
-    fn drawn(&self, indices: &[usize], ranges: Vec<Range>, exact: Vec<u8>) -> Vec<Range> {
+    fn drawn(&self, indices: &[usize], ranges: Vec<Range>, exact: &[u8]) -> Vec<Range> {
         // What is drawn changes with each sample in one direction. It may depend on alpha in either.
         let corners = [[0, 0], [0, 1], [1, 0], [1, 1]].map(|[of_color, of_alpha]| {
             let with_range = |samples: &mut [u8]| {
@@ -174,17 +174,17 @@ impl FinishedRequest<'_> {
             };
             self.annotated_by(with_range)
         });
-        let corners: Vec<Vec<u8>> = corners.into_iter().flatten().chain([exact]).collect();
+        let corners: Vec<Vec<u8>> = corners.into_iter().flatten().collect();
         let drawn = |(index, range): (&usize, Range)| {
             range?;
-            let at = |samples: &Vec<u8>| {
+            let at = |samples: &[u8]| {
                 WrittenPicture { samples: Samples::Encoded(samples), ..*self.exact }
                     .at(*index)
                     .map(|sample| [sample; 2])
             };
             let join =
                 |a: [[f64; 2]; 4], b: [[f64; 2]; 4]| [0, 1, 2, 3].map(|c| [a[c][0].min(b[c][0]), a[c][1].max(b[c][1])]);
-            corners.iter().map(at).reduce(join)
+            corners.iter().map(Vec::as_slice).chain([exact]).map(at).reduce(join)
         };
         indices.iter().zip(ranges).map(drawn).collect()
     }
@@ -263,7 +263,7 @@ impl Checker<'_> {
                 }
             }
         }
-        if let Some(samples) = annotated.clone() {
+        if let Some(samples) = &annotated {
             ranges = request.drawn(&different, ranges, samples);
         }
         let mut all =

@@ -70,7 +70,7 @@ impl FilePicture {
 }
 
 /// Replaces light of the reference by light that a device found and that is known to be legal; `None` if there is none.
-pub(crate) type FindWitness<'a> = dyn Fn(&mut Input, &Image) -> Result<Option<Image>, Failure> + 'a;
+pub(crate) type FindWitness<'a> = dyn Fn(&Checker<'_>, &mut Input, &Image) -> Result<Option<Image>, Failure> + 'a;
 
 /// Judges every pixel of a picture. The reference makes the picture again, with the same random numbers. If the outcome
 /// is undecided, as `outcome` says, a witness may replace some of its light.
@@ -84,18 +84,22 @@ pub(crate) fn judge(
 ) -> Result<FinishedCertificate, Failure> {
     let layers = Outputs::unwritten(outputs.format).layers(encoding);
     let images = render_part(input, input.film, layers, &OpenDevice::Cpu)?;
-    let judged = judge_by(input, encoding, outputs, written, images.clone())?;
+    let scene = input.scene.clone();
+    progress::stage("checking");
+    let checker = Checker::new(&scene).context("the checker cannot be prepared")?;
+    let judged = judge_by(&checker, input, encoding, outputs, written, images.clone())?;
     if let (Outcome::Undecided, false, [image]) =
         (outcome(&judged), input.settings.integrator.is_primary(), &images[..])
-        && let Some(image) = witness(input, image)?
+        && let Some(image) = witness(&checker, input, image)?
     {
-        return judge_by(input, encoding, outputs, written, vec![image]);
+        return judge_by(&checker, input, encoding, outputs, written, vec![image]);
     }
     Ok(judged)
 }
 
 /// Judges a picture by the unfinished pictures of the reference for each eye.
 fn judge_by(
+    checker: &Checker<'_>,
     input: &Input,
     encoding: &Encoding,
     outputs: &Outputs,
@@ -109,7 +113,6 @@ fn judge_by(
     let plain = Outputs::unwritten(outputs.format);
     let exact = FilePicture::of(&image, encoding, &plain)?;
     progress::stage("checking");
-    let checker = Checker::new(&input.scene).context("the checker cannot be prepared")?;
     let draw = |samples: &mut [u8]| annotations.draw_over([image.width(), image.height()], encoding, samples);
     let [picture, exact] = [written, &exact].map(|picture| picture.picture(encoding));
     let annotate = (!annotations.is_empty()).then_some(&draw as &Annotate<'_>);

@@ -14,6 +14,7 @@ use crate::terminal::failure::Failure;
 use crate::terminal::progress;
 use pinhole::image::encoding::Encoding;
 use pinhole::image::{Image, Layer};
+use pinhole::verify::Checker;
 use pinhole::verify::finished::FinishedCertificate;
 
 /// Renders, judges and writes a picture. A picture that is not legal is an error and is not written. If some pixels are
@@ -39,10 +40,14 @@ pub(crate) fn run(
     }
     input.settings.sampling.samples = count;
     let written = FilePicture::of(&image, encoding, &outputs)?;
-    let judged =
-        certified::judge(input, encoding, &outputs, &written, FinishedCertificate::outcome, &|input, exact| {
-            witness(input, exact, opened)
-        })?;
+    let judged = certified::judge(
+        input,
+        encoding,
+        &outputs,
+        &written,
+        FinishedCertificate::outcome,
+        &|checker, input, exact| witness(checker, input, exact, opened),
+    )?;
     let verdict = certified::verdict(&judged);
     if let Err(failure @ Failure::CheckFailed(_)) = verdict {
         return Err(failure);
@@ -57,11 +62,16 @@ pub(crate) fn run(
 
 /// Light that the device finds, where it is known to be legal.
 #[cfg_attr(not(feature = "gpu"), expect(unused_variables, clippy::unnecessary_wraps, reason = "there is no device"))]
-pub(crate) fn witness(input: &mut Input, exact: &Image, opened: &OpenDevice) -> Result<Option<Image>, Failure> {
+pub(crate) fn witness(
+    checker: &Checker<'_>,
+    input: &mut Input,
+    exact: &Image,
+    opened: &OpenDevice,
+) -> Result<Option<Image>, Failure> {
     match opened {
         #[cfg(feature = "gpu")]
         OpenDevice::Device { headless, choice, .. } => {
-            crate::proof::witness::of(headless, input, exact, *choice, opened).map(Some)
+            crate::proof::witness::of(headless, checker, input, exact, *choice, opened).map(Some)
         }
         _ => Ok(None),
     }

@@ -18,12 +18,13 @@ use pinhole::verify::{Checker, LitRecording, Witness};
 /// The side of the rectangles that are recorded, in pixels.
 const SIDE: u32 = 128;
 
-/// Light that differs by less need no witness, because it is finished alike: a step of 16 bits.
+/// Light that differs by less needs no witness, because it is finished alike: a step of 16 bits.
 const STEP: f32 = 1.0 / 65536.0;
 
 /// The unfinished picture of the reference, with the light of the device where that differs and is known to be legal.
 pub(crate) fn of(
     headless: &Headless,
+    checker: &Checker<'_>,
     input: &mut Input,
     exact: &Image,
     choice: AccelChoice,
@@ -46,7 +47,6 @@ pub(crate) fn of(
     let (view, views) = (input.view(), views_of(input, input.film));
     let plan = |choice| render::plan(headless, input, &views, layers, choice);
     let done = with_structures(headless, choice, plan, |plan| {
-        let checker = Checker::new(&input.scene).context("the checker cannot be prepared")?;
         let mut image = exact.clone();
         let recorded = interrupt::on_device(|| {
             let buffers = upload(headless, &input.scene, plan)?;
@@ -55,7 +55,7 @@ pub(crate) fn of(
                 let mut witness = Witness::new(pixels.clone());
                 let each = &mut |recording: &LitRecording| {
                     interrupt::driver_rests(true);
-                    witness.add(&checker, recording);
+                    witness.add(checker, recording);
                     interrupt::driver_rests(false);
                 };
                 let part = LitPart::Rectangle { origin: *origin, size: [SIDE; 2] };

@@ -54,7 +54,7 @@ struct Claim {
     alone: f64,
     moved: f64,
     reason: Reason,
-    /// Whether some normals would not be legal.
+    /// True if some normals would not be legal.
     tells_normals: bool,
 }
 

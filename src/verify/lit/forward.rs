@@ -5,6 +5,7 @@ use glam::{DVec2, DVec3, Vec3};
 
 use crate::camera::View;
 use crate::camera::sampling::{pair, pixel_seed, unit};
+use crate::geometry::math::wide;
 use crate::image::NO_ID;
 use crate::image::color::LUMINANCE;
 use crate::light::emitters::{EmissiveSphere, Emitters};
@@ -14,11 +15,14 @@ use crate::recording::{NO_HIT, RequestedCamera};
 use crate::render::RenderSettings;
 use crate::scene::Scene;
 use crate::verify::Checker;
+use crate::verify::choices::Choices;
 use crate::verify::hit::LegalHits;
 use crate::verify::lit::certificate::Address;
 use crate::verify::lit::check::LitCheck;
 use crate::verify::lit::film::location;
-use crate::verify::lit::kernel::{RayHit, RayState};
+use crate::verify::lit::judge::Mismatch;
+use crate::verify::lit::kernel::{Kernel, Output, RayHit, RayState};
+use crate::verify::lit::search::Entry;
 use crate::verify::number::{Number, Vector};
 use crate::verify::rounding::{FLUSH, Interval, PAD, U};
 use crate::verify::studio::light::Change;
@@ -124,19 +128,9 @@ impl LitCheck<'_> {
         any.moved(moved).find(&self.checker.candidates, hits);
         let Interval { low, high } = any.enter;
         let distance = Number::between(low, high);
-        let found = hits.spheres.iter().flat_map(|hit| {
-            let sides = [hit.near, hit.far].into_iter().flatten().filter(|side| side.low <= hits.limit);
-            // A start at another place makes all distances as much longer or shorter.
-            let apart = high - low + moved;
-            sides.map(move |side| RayHit {
-                t: Number::between((side.low - apart).max(0.0), side.high + apart),
-                distance,
-                id: hit.id,
-                shape_index: 0,
-            })
-        });
-        let miss = RayHit { t: Number::known(NO_HIT.into()), distance: Number::ZERO, id: NO_ID, shape_index: 0 };
-        for hit in found.chain(hits.miss.then_some(miss)) {
+        // A start at another place makes all distances as much longer or shorter.
+        let apart = high - low + moved;
+        for hit in ray_hits(hits, apart, |_| distance) {
             let light = match self.is_studio {
                 true => self.legal_surface(address, &state, hit, &mut 0)?,
                 false => self.legal_vertex(address, &state, hit, &mut 0)?,
@@ -145,6 +139,72 @@ impl LitCheck<'_> {
         }
         all
     }
+}
+
+impl LitCheck<'_> {
+    /// The corners of the scene's box.
+    pub(crate) fn corners(&self) -> [DVec3; 2] {
+        [self.inputs.uploaded.scene_min, self.inputs.uploaded.scene_max].map(wide)
+    }
+
+    /// The legal hits of the next ray; `None` if hardly anything is known of it.
+    pub(crate) fn next_hits(&self, state: &RayState) -> Option<Vec<RayHit>> {
+        let entry = Entry::aimed(self.corners(), state.vector(slot::ORIGIN), state.vector(slot::DIRECTION))?;
+        let id = state.raw.departure().id;
+        let departed = self.checker.scene.spheres().get(id as usize).copied();
+        let is_inside = departed.is_some() && state.has(flag::INSIDE);
+        let own = is_inside.then(|| (id, state.number_at([slot::DEPARTURE, 2]).interval()));
+        let mut legal = LegalHits::default();
+        entry.find(&self.checker.candidates, departed, own, &mut legal);
+        let Interval { low, high } = entry.enter;
+        let is_own = |hit: u32| is_inside && hit == id;
+        let distance = |hit: u32| if is_own(hit) { Number::ZERO } else { Number::between(low, high) };
+        Some(ray_hits(&legal, 0.0, distance).collect())
+    }
+
+    /// The light of a hit, for all combinations of decisions that bounds leave open. `follow` runs the kernel, and `rest`
+    /// finds the light of the state that it leaves. `surfaces` counts the surfaces of the sample, up to `most`.
+    pub(crate) fn legal_outcomes<T>(
+        &self,
+        (address, state, hit): (Address, &RayState, RayHit),
+        (surfaces, most): (&mut u32, u32),
+        follow: impl Fn(&mut Kernel<'_>) -> Result<T, Mismatch>,
+        rest: impl Fn(T, RayState, &mut u32) -> Option<LegalSample>,
+    ) -> Option<LegalSample> {
+        let (mut choices, mut all) = (Choices::default(), None);
+        loop {
+            *surfaces += 1;
+            if *surfaces > most {
+                return None;
+            }
+            let mut kernel = self.kernel(address, state, &mut choices);
+            (kernel.hit, kernel.after) = (hit, Output::Legal(Box::new(state.clone())));
+            // A combination of decisions that no device takes is a mismatch.
+            if let (Ok(met), Output::Legal(after)) = (follow(&mut kernel), kernel.after) {
+                rest(met, *after, surfaces)?.join(&mut all);
+            }
+            if !choices.advance() {
+                break;
+            }
+        }
+        all.filter(|_| !choices.were_too_many())
+    }
+}
+
+/// The hits that are legal, each `apart` nearer or farther, with the distance before that of its sphere.
+fn ray_hits(legal: &LegalHits, apart: f64, distance: impl Fn(u32) -> Number) -> impl Iterator<Item = RayHit> {
+    let found = legal.spheres.iter().flat_map(move |hit| {
+        let distance = distance(hit.id);
+        let sides = [hit.near, hit.far].into_iter().flatten().filter(|side| side.low <= legal.limit);
+        sides.map(move |side| RayHit {
+            t: Number::between((side.low - apart).max(0.0), side.high + apart),
+            distance,
+            id: hit.id,
+            shape_index: 0,
+        })
+    });
+    let miss = RayHit { t: Number::known(NO_HIT.into()), distance: Number::ZERO, id: NO_ID, shape_index: 0 };
+    found.chain(legal.miss.then_some(miss))
 }
 
 /// The means of a pixel's samples.

@@ -6,7 +6,7 @@ use glam::{DVec3, Vec4};
 
 use crate::image::NO_ID;
 use crate::recording::NO_HIT;
-use crate::recording::lit::{NO_EMITTER, PathState, flag, slot};
+use crate::recording::lit::{Departure, NO_EMITTER, PathState, flag, slot};
 use crate::verify::camera::{CameraModel, CameraRay, EnteredRay};
 use crate::verify::checker::Checker;
 use crate::verify::hit::{Candidate, Candidates, LegalHit, LegalHits, legal_hit};
@@ -47,6 +47,31 @@ impl Entry {
             line = Line::exact(line.origin + along, line.direction);
         }
         Self { line, slack, enter, may_hit_box, may_miss_box }
+    }
+
+    /// Finds the legal hits of a ray that leaves a sphere. If it goes through the inside, `own` is the sphere's id and the
+    /// distance to its far side.
+    pub(crate) fn find(
+        &self,
+        candidates: &Candidates,
+        departed: Option<[f32; 4]>,
+        own: Option<(u32, Interval)>,
+        legal: &mut LegalHits,
+    ) {
+        legal.clear();
+        if let Some((_, far_side)) = own {
+            (legal.miss, legal.limit) = (false, far_side.high);
+        }
+        if self.may_hit_box {
+            let is_departed = |sphere| departed.is_some_and(|own| is_same(sphere, own));
+            legal.find_nearer(candidates, &self.line, self.slack, is_departed);
+            legal.miss |= self.may_miss_box && own.is_none();
+        }
+        if let (Some((id, far_side)), Some(sphere)) = (own, departed)
+            && far_side.low <= legal.limit
+        {
+            legal.spheres.push(LegalHit { id, near: None, far: Some(far_side), sphere: sphere.map(f32::to_bits) });
+        }
     }
 
     /// Whether spheres hide a light at a distance from the ray's origin.
@@ -120,27 +145,13 @@ pub(crate) fn check_hit(
     let Hit { t, id, distance, .. } = found;
     let (origin, direction) = (state.vector(slot::ORIGIN), state.vector(slot::DIRECTION));
     let entry = Entry::new(model, origin, direction, (id != NO_ID).then_some(distance));
-    legal.clear();
     let departure = state.departure();
     let departed = scene.spheres().get(departure.id as usize).copied();
     // The exit distance was compared when the path was scattered, and is known exactly.
     let far_side = f64::from(departure.exit_distance);
-    let own = last.zip(departed).filter(|_| state.has(flag::INSIDE));
-    if own.is_some() {
-        legal.miss = false;
-        legal.limit = far_side;
-    }
-    if entry.may_hit_box {
-        let is_departed = |sphere| departed.is_some_and(|own| is_same(sphere, own));
-        legal.find_nearer(candidates, &entry.line, entry.slack, is_departed);
-        legal.miss |= entry.may_miss_box && own.is_none();
-    }
-    if let Some((Hit { id, .. }, sphere)) = own
-        && far_side <= legal.limit
-    {
-        let (near, far) = (None, Some(Interval { low: far_side, high: far_side }));
-        legal.spheres.push(LegalHit { id, near, far, sphere: sphere.map(f32::to_bits) });
-    }
+    let own = last.filter(|_| departed.is_some() && state.has(flag::INSIDE));
+    let far_side = Interval { low: far_side, high: far_side };
+    entry.find(candidates, departed, own.map(|last| (last.id, far_side)), legal);
     let is_open = legal.count() > 1;
     let fail = |what, words: String| Err(judge.fail((STAGE, what), words));
     if id == NO_ID {
@@ -158,7 +169,7 @@ pub(crate) fn check_hit(
     }
     let Interval { low, high } = entry.enter;
     let enter = match own {
-        Some((last, _)) if last.id == id => {
+        Some(last) if last.id == id => {
             judge.bits((STAGE, "the hit's shape index"), found.shape_index, last.shape_index)?;
             Number::ZERO
         }
@@ -168,28 +179,34 @@ pub(crate) fn check_hit(
     Ok(searched(is_open, || legal.alternatives()))
 }
 
-pub(crate) const OPEN: Name = (LitStage::Occlude, "the visibility of the light");
-
-/// Judges the occlusion of a light.
-pub(crate) fn check_open(
-    LitCheck { checker: Checker { scene, candidates }, model, inputs, .. }: &LitCheck<'_>,
+/// Whether spheres hide the sampled light of a path, other than the sphere that it leaves and the one that shines.
+pub(crate) fn hidden_from_path(
+    LitCheck { checker: Checker { scene, candidates }, inputs, .. }: &LitCheck<'_>,
     state: &PathState,
-    open: f32,
-) -> Result<StageResult, Mismatch> {
-    let mut judge = Judge::default();
-    let before = state.number(slot::PENDING);
-    let [x, y, z, distance] = state.slots[slot::SHADOW].map(f32::from_bits);
-    let entry = Entry::new(model, state.vector(slot::ORIGIN), [x, y, z], None);
-    let departed = scene.spheres().get(state.departure().id as usize).copied();
-    let emitter = state.departure().emitter;
+    entry: &Entry,
+    distance: Number,
+) -> Obstacle {
+    let Departure { id, emitter, .. } = state.departure();
+    let departed = scene.spheres().get(id as usize).copied();
     let sphere_of_light = (emitter != NO_EMITTER)
         .then(|| inputs.emitters.get((emitter as usize).saturating_mul(3)))
         .flatten()
         .map(|sphere| sphere.map(f32::from_bits));
     let exempt = [departed, sphere_of_light];
-    let hidden = entry.hidden(candidates, Number::recorded(distance), |candidate| {
+    entry.hidden(candidates, distance, |candidate| {
         exempt.into_iter().flatten().any(|own| is_same(candidate.sphere, own))
-    });
+    })
+}
+
+pub(crate) const OPEN: Name = (LitStage::Occlude, "the visibility of the light");
+
+/// Judges the occlusion of a light.
+pub(crate) fn check_open(check: &LitCheck<'_>, state: &PathState, open: f32) -> Result<StageResult, Mismatch> {
+    let mut judge = Judge::default();
+    let before = state.number(slot::PENDING);
+    let [x, y, z, distance] = state.slots[slot::SHADOW].map(f32::from_bits);
+    let entry = Entry::new(&check.model, state.vector(slot::ORIGIN), [x, y, z], None);
+    let hidden = hidden_from_path(check, state, &entry, Number::recorded(distance));
     let is_hidden = open == 0.0;
     if (is_hidden && !hidden.may) || (!is_hidden && hidden.must) {
         let words =

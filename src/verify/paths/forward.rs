@@ -1,27 +1,24 @@
 //! All light that a conforming device may find along a path. Where bounds grow so wide that nothing more can be said, the
 //! rest of the path may bring any light up to a bound.
 
-use crate::geometry::math::wide;
-use crate::image::NO_ID;
 use crate::light::codes::lamp::{DIRECTIONAL, HEAD, SPHERE};
 use crate::light::codes::sampling::{CHANCE, MULTIPLE};
-use crate::recording::NO_HIT;
-use crate::recording::lit::{NO_EMITTER, UploadedLighting, flag, slot};
+use crate::recording::lit::{UploadedLighting, flag, slot};
 use crate::scene::material::Material;
-use crate::verify::choices::Choices;
-use crate::verify::hit::{LegalHit, LegalHits};
 use crate::verify::lit::certificate::Address;
 use crate::verify::lit::check::LitCheck;
 use crate::verify::lit::forward::LegalSample;
-use crate::verify::lit::kernel::{Output, RayHit, RayState};
-use crate::verify::lit::search::{Entry, is_same};
+use crate::verify::lit::kernel::{Kernel, RayHit, RayState};
+use crate::verify::lit::search::{Entry, hidden_from_path};
 use crate::verify::number::{Number, Vector};
 use crate::verify::paths::kernel::radiance_so_far;
-use crate::verify::rounding::Interval;
 use crate::verify::studio::light::Change;
 
 /// The most surfaces that are followed for a sample, along all branches.
 const MOST_SURFACES: u32 = 60;
+
+/// The most combinations of decisions at these surfaces.
+const MOST_COMBINATIONS: u32 = 4 * MOST_SURFACES + 1;
 
 /// Light that has no bound.
 const ANY_LIGHT: f64 = 1e30;
@@ -35,23 +32,9 @@ impl LitCheck<'_> {
         hit: RayHit,
         surfaces: &mut u32,
     ) -> Option<LegalSample> {
-        let (mut choices, mut all) = (Choices::default(), None);
-        loop {
-            *surfaces += 1;
-            let mut kernel = self.kernel(address, state, &mut choices);
-            (kernel.hit, kernel.after) = (hit, Output::Legal(Box::new(state.clone())));
-            // A combination of decisions that no device takes is a mismatch.
-            if let (Ok(()), Output::Legal(after)) = (kernel.follow(), kernel.after) {
-                self.legal_rest(address, *after, surfaces).join(&mut all);
-            }
-            if !choices.advance() {
-                break;
-            }
-            if *surfaces > 4 * MOST_SURFACES {
-                return None;
-            }
-        }
-        all.filter(|_| !choices.were_too_many())
+        let follow = |kernel: &mut Kernel<'_>| kernel.follow();
+        let rest = |(), after, surfaces: &mut u32| Some(self.legal_rest(address, after, surfaces));
+        self.legal_outcomes((address, state, hit), (surfaces, MOST_COMBINATIONS), follow, rest)
     }
 
     /// The light of a path that has left a surface.
@@ -93,72 +76,15 @@ impl LitCheck<'_> {
 
     /// Searches for what hides the sampled light.
     fn let_light_in(&self, after: &mut RayState) {
-        let spheres = self.checker.scene.spheres();
-        let departure = after.raw.departure();
-        let departed = spheres.get(departure.id as usize).copied();
-        let lamp = (departure.emitter != NO_EMITTER)
-            .then(|| self.inputs.emitters.get((departure.emitter as usize).saturating_mul(3)))
-            .flatten()
-            .map(|sphere| sphere.map(f32::from_bits));
-        let exempt = [departed, lamp];
         let (mut may, mut must) = (true, false);
         if let Some(entry) = Entry::aimed(self.corners(), after.vector(slot::ORIGIN), after.vector(slot::SHADOW)) {
-            let hidden = entry.hidden(&self.checker.candidates, after.number(slot::SHADOW), |candidate| {
-                exempt.into_iter().flatten().any(|own| is_same(candidate.sphere, own))
-            });
+            let hidden = hidden_from_path(self, &after.raw, &entry, after.number(slot::SHADOW));
             (may, must) = (hidden.may, hidden.must);
         }
         if may {
             let open = if must { Number::ZERO } else { after.number(slot::PENDING) * Number::between(0.0, 1.0) };
             after.set([slot::PENDING, 3], open);
         }
-    }
-
-    fn corners(&self) -> [glam::DVec3; 2] {
-        [self.inputs.uploaded.scene_min, self.inputs.uploaded.scene_max].map(wide)
-    }
-
-    /// The legal hits of the next ray; `None` if hardly anything is known of it.
-    pub(crate) fn next_hits(&self, state: &RayState) -> Option<Vec<RayHit>> {
-        let entry = Entry::aimed(self.corners(), state.vector(slot::ORIGIN), state.vector(slot::DIRECTION))?;
-        let departure = state.raw.departure();
-        let departed = self.checker.scene.spheres().get(departure.id as usize).copied();
-        let own = departed.filter(|_| state.has(flag::INSIDE));
-        let far_side = state.number_at([slot::DEPARTURE, 2]).interval();
-        let mut legal = LegalHits::default();
-        legal.clear();
-        if own.is_some() {
-            (legal.miss, legal.limit) = (false, far_side.high);
-        }
-        if entry.may_hit_box {
-            let is_departed = |sphere| departed.is_some_and(|own| is_same(sphere, own));
-            legal.find_nearer(&self.checker.candidates, &entry.line, entry.slack, is_departed);
-            legal.miss |= entry.may_miss_box && own.is_none();
-        }
-        if let Some(sphere) = own
-            && far_side.low <= legal.limit
-        {
-            legal.spheres.push(LegalHit {
-                id: departure.id,
-                near: None,
-                far: Some(far_side),
-                sphere: sphere.map(f32::to_bits),
-            });
-        }
-        let Interval { low, high } = entry.enter;
-        let hits = legal.spheres.iter().flat_map(|hit| {
-            let is_own = own.is_some() && hit.id == departure.id;
-            let distance = if is_own { Number::ZERO } else { Number::between(low, high) };
-            let sides = [hit.near, hit.far].into_iter().flatten().filter(|side| side.low <= legal.limit);
-            sides.map(move |side| RayHit {
-                t: Number::between(side.low.max(0.0), side.high),
-                distance,
-                id: hit.id,
-                shape_index: 0,
-            })
-        });
-        let miss = RayHit { t: Number::known(NO_HIT.into()), distance: Number::ZERO, id: NO_ID, shape_index: 0 };
-        Some(hits.chain(legal.miss.then_some(miss)).collect())
     }
 
     /// The most light that can arrive along a path that carries all of it.

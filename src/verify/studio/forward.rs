@@ -5,7 +5,7 @@ use crate::verify::choices::Choices;
 use crate::verify::lit::certificate::Address;
 use crate::verify::lit::check::LitCheck;
 use crate::verify::lit::forward::LegalSample;
-use crate::verify::lit::kernel::{Kernel, Output, RayHit, RayState};
+use crate::verify::lit::kernel::{Kernel, RayHit, RayState};
 use crate::verify::lit::search::Obstacle;
 use crate::verify::number::Number;
 use crate::verify::studio::light::Change;
@@ -24,33 +24,20 @@ impl LitCheck<'_> {
         hit: RayHit,
         surfaces: &mut u32,
     ) -> Option<LegalSample> {
-        let (mut choices, mut all) = (Choices::default(), None::<LegalSample>);
         let is_last = address.surface + 1 >= self.inputs.max_surfaces;
-        loop {
-            *surfaces += 1;
-            if *surfaces > MOST_SURFACES {
-                return None;
+        let rest = |met, after: RayState, surfaces: &mut u32| {
+            let own = Change { radiance: after.vector(slot::RADIANCE), opacity: after.number(slot::RADIANCE) };
+            let lit = match met {
+                HitKind::Surface => own.plus(self.legal_lights(address, &after)?),
+                HitKind::Nothing | HitKind::Emitter => own,
+            };
+            match after.has(flag::ALIVE) {
+                true => self.legal_behind(address, after, lit, surfaces),
+                false => Some(LegalSample { light: lit, first: after.vector(slot::FIRST) }),
             }
-            let mut kernel = self.kernel(address, state, &mut choices);
-            (kernel.hit, kernel.after) = (hit, Output::Legal(Box::new(state.clone())));
-            // A combination of decisions that no device takes is a mismatch.
-            if let (Ok(met), Output::Legal(after)) = (kernel.follow_surface(is_last), kernel.after) {
-                let own = Change { radiance: after.vector(slot::RADIANCE), opacity: after.number(slot::RADIANCE) };
-                let lit = match met {
-                    HitKind::Surface => own.plus(self.legal_lights(address, &after)?),
-                    HitKind::Nothing | HitKind::Emitter => own,
-                };
-                match after.has(flag::ALIVE) {
-                    true => self.legal_behind(address, *after, lit, surfaces)?,
-                    false => LegalSample { light: lit, first: after.vector(slot::FIRST) },
-                }
-                .join(&mut all);
-            }
-            if !choices.advance() {
-                break;
-            }
-        }
-        all.filter(|_| !choices.were_too_many())
+        };
+        let follow = |kernel: &mut Kernel<'_>| kernel.follow_surface(is_last);
+        self.legal_outcomes((address, state, hit), (surfaces, MOST_SURFACES), follow, rest)
     }
 
     /// The light of all surfaces behind one that has this light so far.

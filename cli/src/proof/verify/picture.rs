@@ -23,9 +23,9 @@ use pinhole::image::Image;
 use pinhole::image::encoding::Encoding;
 use pinhole::internals::text::{one_line, whole_line};
 use pinhole::render::Integrator;
-use pinhole::verify::Outcome;
 use pinhole::verify::finished::{FinishedCertificate, PixelVerdict};
 use pinhole::verify::picture_certificate::PictureCertificate;
+use pinhole::verify::{Checker, Outcome};
 use pinhole_figure::read::picture::{self, FileSamples};
 
 /// The JSON document of `--json`.
@@ -80,7 +80,9 @@ pub(crate) fn run(args: &VerifyArgs, path: &Path, scene: &Path) -> Result<(), Fa
     check_kind(path, &written, &input, &encoding)?;
     check_work(path, &input, args.work)?;
     // If the reference alone does not decide, an adapter of this machine may give light that is known to be legal.
-    let find = |input: &mut Input, exact: &Image| witness(input, exact, &Device::any().open()?);
+    let find = |checker: &Checker<'_>, input: &mut Input, exact: &Image| {
+        witness(checker, input, exact, &Device::any().open()?)
+    };
     let judged = certified::judge(&mut input, &encoding, &outputs, &written, FinishedCertificate::outcome, &find)?;
     progress::clear();
     let shown = |[name, value]: &[String; 2]| format!(" --{name}={}", in_quotes(&one_line(value)));

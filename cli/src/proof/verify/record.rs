@@ -208,7 +208,7 @@ fn judged_light(
     let written = FilePicture::of(&image, &input.encoding, &outputs)?;
     let encoding = input.encoding;
     let outcome = FinishedCertificate::outcome_of_device;
-    let find = |input: &mut Input, exact: &Image| witness(input, exact, &opened);
+    let find = |checker: &Checker<'_>, input: &mut Input, exact: &Image| witness(checker, input, exact, &opened);
     let rendered = certified::judge(&mut input, &encoding, &outputs, &written, outcome, &find)?;
     progress::stage("finishing");
     let mut denoiser = None;

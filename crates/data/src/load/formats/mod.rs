@@ -40,7 +40,7 @@ const RAW: Format = Format {
     extra_bytes: |_| Ok(0),
 };
 
-/// What text formats have.
+/// The facts about text formats.
 const TEXT: Format = Format { is_text: true, ..RAW };
 
 /// All formats that this build can read. No two of them share a name or an extension.
