@@ -140,7 +140,9 @@ pub(crate) fn verdict(judged: &FinishedCertificate) -> Result<(), Failure> {
         Outcome::Proved => Ok(()),
         Outcome::Violated => {
             let first = judged.violations.first().map(ToString::to_string).unwrap_or_default();
-            Err(Failure::CheckFailed(anyhow!("the picture is not legal: {violated} of {all} pixels; {first}")))
+            // Of many pixels that differ, a part is followed.
+            let least = if open > 0 { "at least " } else { "" };
+            Err(Failure::CheckFailed(anyhow!("the picture is not legal: {least}{violated} of {all} pixels; {first}")))
         }
         Outcome::Undecided => Err(Failure::Undecided(match judged.open.first() {
             Some(first) if open == 0 && wide as f64 > MOST_WIDE * all as f64 => anyhow!(
