@@ -10,7 +10,7 @@ use super::labels::{LabelsBuilder, Memo};
 use super::{Column, ColumnValues, Dataset};
 use element::Residue;
 use pinhole::image::color::LinearRgb;
-use pinhole::internals::text::listed;
+use pinhole::internals::text::{listed, shortened};
 use pinhole::scene::sphere_array::SphereArray;
 
 pub(super) struct Atom<'a> {
@@ -127,7 +127,7 @@ impl Atoms {
             let mut names: Vec<_> = atoms.iter().map(|atom| self.residue.indices[*atom]).collect();
             names.sort_unstable();
             names.dedup();
-            listed(names.iter().map(|index| self.residue.names[*index as usize].clone()), 5)
+            listed(names.iter().map(|index| shortened(&self.residue.names[*index as usize])), 5)
         };
         let note = |atoms: &[usize], is: &str, why: &str| {
             (!atoms.is_empty()).then(|| {

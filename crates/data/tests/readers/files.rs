@@ -111,6 +111,16 @@ fn written(loaded: &Dataset) -> String {
 }
 
 /// Zeros that are compressed are refused by the first of them, and what is no regular file before it is opened.
+/// A name from a file may hold any character.
+#[test]
+fn notes_escape_names() {
+    let atom = "HETATM 4430 CA   HE\u{1b} A 142       8.128   7.371 -15.022  1.00 16.74\n";
+    let loaded = load::from_bytes(atom.as_bytes(), "a.pdb", &Options::default()).unwrap();
+    let note = "1 atoms CA of the residues HE\\u{1b} have no element and are taken as calcium, because the place of the \
+                name says so";
+    assert_eq!(loaded.notes, [note]);
+}
+
 #[test]
 fn bombs_and_special_files_are_refused_at_once() {
     let folder = TempDir::new().unwrap();
