@@ -75,7 +75,9 @@ pub(crate) fn verified(scene: &Scene, look: &Look, stop: &Stop) -> Outcome<Certi
         headless.record_and_render(&buffers, &view, &settings, &mut |_: &Progress| stop.decision()).wait()
     };
     let record = async |plan: &RenderPlan| Ok::<_, GpuError>(record(plan));
-    let recording = with_retries(AccelChoice::Auto, plan, |_| {}, record).wait()??;
+    let mut recording = with_retries(AccelChoice::Auto, plan, |_| {}, record).wait()??;
+    let watch = &mut |_: &Progress| stop.decision();
+    headless.compare_single(&mut recording, scene, &view, &settings, watch).wait()?;
     let checker = Checker::new(scene).map_err(Fault::input)?;
     let certificate = checker.certify(&recording);
     Ok(CertificateData { certificate, adapter: headless.adapter_info().name.clone() })

@@ -1,6 +1,6 @@
-// Searching a brick, which is a part of the scene that fits into bindings, for the nearest shape.
-// provides: Nearest, Search, brick, distance_within, ids, nearest_hit, offer, shapes
-// needs: Brick, Entry, Excluded, Hit, NO_HIT, Ray, Shape, find_nearest, intersect, is_excluded
+// A brick, which is a part of the scene that fits into bindings, and the tests of its shapes.
+// provides: Nearest, Search, brick, distance_within, hit_of, ids, offer, shapes
+// needs: Brick, Entry, Excluded, Hit, NO_HIT, Ray, Shape, intersect, is_excluded
 
 struct Nearest {
     t: f32,
@@ -48,12 +48,8 @@ fn offer(nearest: ptr<function, Nearest>, t: f32, shape_index: u32) {
     }
 }
 
-// The nearest hit in the brick, or the hit `before` from earlier bricks if that is nearer.
-fn nearest_hit(entry: Entry, excluded: Excluded, before: Hit) -> Hit {
-    var nearest = Nearest(before.t, before.id, 0u);
-    if (entry.is_inside) {
-        find_nearest(Search(entry.ray, entry.inverse, excluded), &nearest);
-    }
+// The nearest hit, where `before` is that of earlier bricks.
+fn hit_of(nearest: Nearest, entry: Entry, before: Hit) -> Hit {
     var hit = before;
     if (nearest.id != before.id) {
         hit = Hit(nearest.t, nearest.id, brick.first_shape + nearest.shape_index, entry.distance);

@@ -11,15 +11,18 @@ use super::plan::AccelPlan;
 use super::split::Item;
 use super::statistics::Margins;
 use super::structure::{BrickKind, Primitive, Structure};
+#[cfg(feature = "gpu")]
+use super::tiles::TileLists;
 use super::wide_tree::WideTree;
 #[cfg(feature = "gpu")]
 use crate::parallel::map_chunks;
 use crate::parallel::ranges;
 
 /// The acceleration structure of a brick.
-#[derive(Clone, Debug)]
+#[derive(Clone, Debug, Default)]
 pub enum Index {
     /// No structure: every sphere is tested.
+    #[default]
     List,
     /// One or two levels of grid cells.
     Grid(Grid),
@@ -32,10 +35,13 @@ pub enum Index {
     /// holds its sphere inflated by the margin of trees, which exceeds the error of any arithmetic that rounds as WGSL
     /// allows (`slab.rs`). Only a certificate can show whether a driver's own arithmetic is as good.
     RayQuery(Vec<[f32; 6]>),
+    /// Lists of the spheres of each tile of one picture.
+    #[cfg(feature = "gpu")]
+    Tiles(TileLists),
 }
 
-/// A part of a scene with its acceleration structure.
-#[derive(Clone, Debug)]
+/// A part of a scene with its acceleration structure. The default is empty.
+#[derive(Clone, Debug, Default)]
 pub struct Brick {
     /// The acceleration structure of the spheres.
     pub index: Index,
@@ -177,7 +183,7 @@ impl Bricks<'_> {
         let margin = plan.statistics.margin();
         let own = || -> Vec<[f32; 4]> { ids.iter().map(|id| spheres[*id as usize]).collect() };
         match plan.structure {
-            Structure::List => Brick { index: Index::List, spheres: own(), ids },
+            Structure::List | Structure::Tiles => Brick { index: Index::List, spheres: own(), ids },
             Structure::Grid | Structure::NestedGrid => {
                 let BuiltGrid { grid, spheres, ids } = build_grid(spheres, &ids, margin, plan.budget);
                 Brick { index: Index::Grid(grid), spheres, ids }
@@ -251,6 +257,11 @@ pub(crate) struct BrickBounds {
 impl BrickBounds {
     pub(crate) const EMPTY: Self =
         Self { center_min: Vec3::MAX, center_max: Vec3::MIN, min: Vec3::MAX, max: Vec3::MIN };
+
+    /// The bounds of spheres that fill a box.
+    pub(crate) fn of_box((min, max): (Vec3, Vec3)) -> Self {
+        Self { center_min: min, center_max: max, min, max }
+    }
 
     /// Computes the bounds of the given spheres.
     pub(crate) fn of_spheres(spheres: &[[f32; 4]]) -> Self {

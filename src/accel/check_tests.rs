@@ -37,6 +37,8 @@ fn check(brick: &Brick, margin: f32) -> Result<(), String> {
         Index::Grid(grid) => GridCheck { grid, spheres, ids, margin: margin.into() }.all(),
         Index::WideTree(tree) => check_tree(tree, spheres, ids),
         Index::List | Index::RayQuery(_) => Ok(()),
+        #[cfg(feature = "gpu")]
+        Index::Tiles(_) => Ok(()),
     }
 }
 

@@ -20,6 +20,10 @@ pub(crate) mod slab;
 mod split;
 mod statistics;
 mod structure;
+#[cfg(feature = "gpu")]
+pub(crate) mod tile_lists;
+#[cfg(feature = "gpu")]
+pub(crate) mod tiles;
 pub(crate) mod wide_tree;
 mod wide_tree_build;
 pub(crate) mod wide_tree_visit;

@@ -172,7 +172,7 @@ impl AccelPlan {
     fn building_bytes(&self) -> u64 {
         let per_brick = self.per_brick();
         match self.structure {
-            Structure::List => 0,
+            Structure::List | Structure::Tiles => 0,
             Structure::RayQuery => per_brick * 44,
             // The spheres of a brick, their ids twice, and the builder's data for each sphere. Growing vectors leave
             // some memory unused.
@@ -189,7 +189,7 @@ impl AccelPlan {
         let cells = self.budget.cells as u64;
         let mut buffers = vec![("spheres", 16 * per_brick)];
         match self.structure {
-            Structure::List => buffers.push(("ids", 4 * per_brick)),
+            Structure::List | Structure::Tiles => buffers.push(("ids", 4 * per_brick)),
             Structure::WideTree => {
                 buffers.push(("ids", 4 * per_brick));
                 buffers.push(("nodes", node_bytes(self.structure, per_brick)));

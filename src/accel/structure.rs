@@ -46,6 +46,8 @@ pub enum Structure {
     WideTree,
     /// A structure that the driver builds from boxes and searches by ray queries, which not all devices support.
     RayQuery,
+    /// No structure, but a list of spheres for each tile of one picture, which is made for its camera.
+    Tiles,
 }
 
 impl Structure {
@@ -72,6 +74,7 @@ impl Structure {
     pub const fn choice(self) -> AccelChoice {
         match self {
             Self::List => AccelChoice::List,
+            Self::Tiles => AccelChoice::Auto,
             Self::Grid | Self::NestedGrid => AccelChoice::Grid,
             Self::WideTree => AccelChoice::Tree,
             Self::RayQuery => AccelChoice::RayQuery,
@@ -87,6 +90,7 @@ impl Structure {
             Self::NestedGrid => "nested grids",
             Self::WideTree => "8-wide tree",
             Self::RayQuery => "ray query",
+            Self::Tiles => "tiles",
         }
     }
 
@@ -96,6 +100,7 @@ impl Structure {
     pub const fn instead(self) -> Option<AccelChoice> {
         match self {
             Self::List => None,
+            Self::Tiles => Some(AccelChoice::Grid),
             Self::Grid | Self::NestedGrid => Some(AccelChoice::Tree),
             Self::WideTree => Some(AccelChoice::List),
             Self::RayQuery => Some(AccelChoice::Tree),

@@ -42,10 +42,14 @@ pub enum PlainRender {
 }
 
 impl Recording {
-    /// Compares with a picture of the same view from kernels that do not record rays, and keeps it if it differs.
+    /// Compares with a picture of the same view from kernels that do not record rays, and keeps it if it differs, unless
+    /// another one differs already.
     pub fn compare(&mut self, rendered: Image) {
-        let is_same = rendered == self.image;
-        self.rendered = if is_same { PlainRender::Same } else { PlainRender::Other(Box::new(rendered)) };
+        self.rendered = match std::mem::take(&mut self.rendered) {
+            PlainRender::None | PlainRender::Same if rendered == self.image => PlainRender::Same,
+            PlainRender::None | PlainRender::Same => PlainRender::Other(Box::new(rendered)),
+            other => other,
+        };
     }
 }
 

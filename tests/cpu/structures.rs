@@ -60,6 +60,8 @@ fn buffers(brick: &Brick) -> Vec<(&'static str, u64)> {
         Index::List | Index::Grid(_) => {}
         Index::WideTree(tree) => buffers.push(("nodes", size_of_val(&tree.nodes[..]) as u64)),
         Index::RayQuery(boxes) => buffers.push(("boxes", size_of_val(&boxes[..]) as u64)),
+        #[cfg(feature = "gpu")]
+        Index::Tiles(_) => {}
     }
     buffers
 }

@@ -125,6 +125,7 @@ fn bands(_: &'static Headless) {
 /// A plan with bricks for a binding of `bytes` bytes.
 fn planned(headless: &Headless, view: &View, choice: AccelChoice, bytes: u64) -> RenderPlan {
     let request = PictureRequest {
+        is_only: false,
         scene: &view.scene,
         view: view.seen(),
         settings: &view.settings,

@@ -12,7 +12,8 @@ use libtest_mimic::Trial;
 use pinhole::accel::{Accel, AccelChoice, AccelPlan, Brick, Structure};
 use pinhole::camera::{Camera, OrthographicCamera, PinholeCamera, Pose};
 use pinhole::gpu::{
-    ColorTarget, Decision, GpuError, Headless, HeadlessOptions, LimitChoice, RendererOptions, SceneBuffers, Wait, wgpu,
+    ColorTarget, Decision, GpuError, Headless, HeadlessOptions, LimitChoice, PictureRequest, RendererOptions,
+    SceneBuffers, Wait, wgpu,
 };
 use pinhole::image::NO_ID;
 use pinhole::internals::{NO_HIT, ShaderEdit};
@@ -81,6 +82,8 @@ pub(crate) fn trials() -> Vec<Trial> {
             })
         })
         .collect();
+    trials.push(trial("structures::lists_of_tiles_in_slabs", slabs));
+    trials.push(trial("structures::too_many_lists_of_tiles", too_many_lists));
     trials.push(trial("structures::outliers_do_not_show", outliers));
     trials.push(trial("structures::rays_from_afar_need_wider_boxes", unwidened));
     trials.push(trial("structures::slices_do_not_show", slices));
@@ -162,6 +165,52 @@ fn check(headless: &Headless, spheres: Spheres) {
             assert_same(&name, &render(&WEBGPU, &views, &accel), &expected);
         }
     }
+    if scene.len() > 32 {
+        assert_same("tiles", &by_tiles(headless, &views), &expected);
+    }
+}
+
+fn by_tiles(headless: &Headless, views: &[View]) -> Vec<Image> {
+    let by_tiles = |view: &View| {
+        let (scene, settings) = (&view.scene, &view.settings);
+        let request =
+            PictureRequest { is_only: true, ..PictureRequest::new(scene, &view.seen(), settings, LayerSet::ALL) };
+        let plan = headless.plan(&request, AccelChoice::Auto);
+        assert_eq!(plan.structure(), Structure::Tiles);
+        headless
+            .render_planned(&request, &plan, &mut |_| Decision::GoOn, &mut |_| Decision::GoOn)
+            .wait()
+            .map(|picture| picture.image)
+    };
+    views.iter().map(|view| by_tiles(view).unwrap()).collect()
+}
+
+/// So many spheres that lists are made in slabs of depth, and so many in one place that a slab needs several bricks.
+fn slabs(headless: &'static Headless) {
+    let mut heap = spheres::random(1_000, 5, |_| 0.02);
+    heap.extend(vec![[0.4, 0.5, 0.6, 0.01]; 20_000]);
+    for spheres in [spheres::random(300_000, 4, |rng| if rng.u32(..1000) == 0 { 0.05 } else { 0.004 }), heap] {
+        let scene = white(spheres);
+        let views = views(&scene);
+        let expected = render(headless, &views, &built(&scene, AccelChoice::Grid));
+        assert_same("tiles", &by_tiles(headless, &views), &expected);
+    }
+}
+
+/// Where a picture needs too many lists, another structure is chosen.
+fn too_many_lists(headless: &'static Headless) {
+    let scene = white(vec![[1.0, 2.0, 3.0, 0.5]; 250_000]);
+    let camera = PinholeCamera::framing_from_the_front(scene.bounds_to_frame(), 1.0).unwrap();
+    let view = view(&scene, camera, [24, 24]);
+    let request =
+        PictureRequest { is_only: true, ..PictureRequest::new(&scene, &view.seen(), &view.settings, LayerSet::DATA) };
+    let plan = headless.plan(&request, AccelChoice::Auto);
+    assert_eq!(plan.structure(), Structure::Tiles);
+    let picture = headless.render_planned(&request, &plan, &mut |_| Decision::GoOn, &mut |_| Decision::GoOn).wait();
+    assert!(matches!(picture, Err(GpuError::Steps)), "{picture:?}");
+    assert_eq!(plan.instead(), Some(AccelChoice::Grid));
+    let image = headless.render(&scene, &view.seen(), &view.settings, LayerSet::DATA).wait().unwrap();
+    assert!(image.id().unwrap().contains(&0));
 }
 
 /// A crowd beside an outlier, seen from near and from the outlier's side.
@@ -179,6 +228,7 @@ fn outliers(headless: &'static Headless) {
         for accel in all(scene.spheres()) {
             assert_same(accel.structure().name(), &render(headless, &views, &accel), &expected);
         }
+        assert_same("tiles", &by_tiles(headless, &views), &expected);
     }
 }
 

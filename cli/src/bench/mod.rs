@@ -107,6 +107,7 @@ fn measure(
     let started = Instant::now();
     let (view, settings) = (View::new(camera.as_ref(), *film), RenderSettings::default());
     let request = PictureRequest {
+        is_only: false,
         scene: spheres,
         view,
         settings: &settings,

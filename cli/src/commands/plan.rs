@@ -132,11 +132,13 @@ pub(crate) fn run(args: &PlanArgs) -> Result<(), Failure> {
     let headless = adapter.open_any()?;
     progress::stage("planning");
     let choice = args.accel.accel.unwrap_or_default();
-    let plan = render::plan(&headless, &input, &views_of(&input, input.film), layers, choice);
+    let views = views_of(&input, input.film);
+    let is_only = input.bricks.is_none() && views.len() == 1;
+    let plan = render::plan(&headless, &input, &views, layers, choice, is_only);
     let available = memory::available();
     let verdict = plan.check(&headless.device().limits(), available).map_err(|error| explained(&headless, &error));
     let problem = verdict.as_ref().err().map(Failure::message);
-    let report = Report::new(&input, plan, &headless, available, problem);
+    let report = Report::new(&input, &plan, &headless, available, problem);
     let text = if args.json { json(&report)? } else { report.readable() };
     progress::clear();
     answer(text.as_bytes())?;
@@ -146,7 +148,7 @@ pub(crate) fn run(args: &PlanArgs) -> Result<(), Failure> {
 impl Report {
     fn new(
         input: &Input,
-        plan: RenderPlan,
+        plan: &RenderPlan,
         headless: &Headless,
         host_bytes_available: Option<u64>,
         problem: Option<String>,
@@ -186,9 +188,9 @@ impl Report {
                 max_texture_dimension_2d: limits.max_texture_dimension_2d,
             },
             structure: StructureReport {
-                name: plan.accel.structure.name(),
-                reason: plan.accel.reason,
-                bricks: plan.accel.brick_count,
+                name: plan.structure().name(),
+                reason: plan.reason().to_owned(),
+                bricks: plan.brick_count(),
             },
             fits: problem.is_none(),
             problem,

@@ -45,7 +45,7 @@ pub(crate) fn of(
     let samples: Vec<u32> = (0..input.settings.sampling.samples).collect();
     let unfinished = input.settings.unfinished();
     let (view, views) = (input.view(), views_of(input, input.film));
-    let plan = |choice| render::plan(headless, input, &views, layers, choice);
+    let plan = |choice| render::plan(headless, input, &views, layers, choice, false);
     let done = with_structures(headless, choice, plan, |plan| {
         let mut image = exact.clone();
         let recorded = interrupt::on_device(|| {

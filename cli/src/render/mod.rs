@@ -246,13 +246,13 @@ fn on_gpu(headless: &Headless, shot: &Shot<'_>, choice: AccelChoice) -> Result<V
     let Input { scene, settings, .. } = input;
     let is_lit = !settings.integrator.is_primary();
     let pixels = shot.film().pixel_count();
-    let plan = |choice| plan(headless, input, views, layers, choice);
+    let plan = |choice| plan(headless, input, views, layers, choice, views.len() == 1);
     let rendered = with_structures(headless, choice, plan, |plan| {
         let mut too_short = None;
         let (done, is_stopped) = interrupt::keeping(|| {
             if let (false, [view]) = (is_lit, views) {
                 let watching = Watching::new(stop_rule, 1, pixels, false);
-                let name = plan.accel.structure.name();
+                let name = plan.structure().name();
                 let upload_watch = &mut |progress: &_| watch_upload(name, progress);
                 let watch = &mut |progress: &_| watching.decide(progress);
                 let request = PictureRequest::new(scene, view, settings, layers);
@@ -282,7 +282,7 @@ fn on_gpu(headless: &Headless, shot: &Shot<'_>, choice: AccelChoice) -> Result<V
     Ok(judged(pictures, settings.sampling.samples, is_stopped))
 }
 
-/// Plans the device memory for the pictures of an input.
+/// Plans the device memory for the pictures of an input. `is_only` as in [`PictureRequest`].
 #[cfg(feature = "gpu")]
 pub(crate) fn plan(
     headless: &Headless,
@@ -290,9 +290,10 @@ pub(crate) fn plan(
     views: &[View<'_>],
     layers: LayerSet,
     choice: AccelChoice,
+    is_only: bool,
 ) -> RenderPlan {
     let host_bytes_per_pixel = extra_bytes_per_pixel(views, layers);
     let view = View::new(input.camera.as_ref(), views[0].film);
     let request = PictureRequest::new(&input.scene, &view, &input.settings, layers);
-    headless.plan(&PictureRequest { host_bytes_per_pixel, ..request }, choice)
+    headless.plan(&PictureRequest { host_bytes_per_pixel, is_only, ..request }, choice)
 }

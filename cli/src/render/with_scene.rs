@@ -34,7 +34,7 @@ pub(crate) fn with_structures<T>(
         if let Err(error) = plan.check(&headless.device().limits(), memory::available()) {
             return Ok(Err(error));
         }
-        Ok(work(plan)?.map(|done| (done, plan.accel.structure)))
+        Ok(work(plan)?.map(|done| (done, plan.structure())))
     })
     .wait()
 }

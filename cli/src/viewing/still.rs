@@ -144,7 +144,7 @@ fn first_render(
 ) -> Result<Result<(SceneBuffers, Picture), GpuError>, Failure> {
     let input = &shown.input;
     let view = [input.view()];
-    let plan = |choice| render::plan(headless, input, &view, layers, choice);
+    let plan = |choice| render::plan(headless, input, &view, layers, choice, false);
     let done = with_structures(headless, choice, plan, |plan| {
         let uploaded = upload(headless, &input.scene, plan);
         Ok(uploaded.and_then(|buffers| {

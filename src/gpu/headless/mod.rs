@@ -17,6 +17,8 @@ pub(crate) mod progress;
 pub(crate) mod readback;
 pub(crate) mod recording;
 pub(crate) mod renderers;
+pub(crate) mod tile_plan;
+pub(crate) mod tiled_picture;
 pub(crate) mod uploading;
 pub(crate) mod waiting;
 
@@ -201,7 +203,7 @@ impl Headless {
         layers: LayerSet,
     ) -> Result<Image, GpuError> {
         settings.check(scene)?;
-        let request = PictureRequest::new(scene, view, settings, layers);
+        let request = PictureRequest { is_only: true, ..PictureRequest::new(scene, view, settings, layers) };
         let plan = |choice| self.plan(&request, choice);
         let picture =
             retried(plan, async |plan: &RenderPlan| self.render_planned(&request, plan, &mut go_on, &mut go_on).await);

@@ -47,6 +47,10 @@ impl Headless {
         watch: &mut Watch<'_>,
     ) -> Result<Picture, GpuError> {
         let PictureRequest { scene, view, settings, layers, .. } = *request;
+        if plan.by_tiles {
+            let image = self.render_by_tiles(request, plan, upload_watch, watch).await?;
+            return Ok(Picture { image, samples: 1, noise: None, hits: None });
+        }
         if self.drops_bricks(plan, &view, settings) {
             let image = self.render_by_brick(request, plan, upload_watch, watch, None);
             return Ok(Picture { image: image.await?, samples: 1, noise: None, hits: None });

@@ -7,7 +7,7 @@ use crate::camera::View;
 use crate::camera::film::Film;
 use crate::gpu::device_shape::DeviceLimits;
 use crate::gpu::error::GpuError;
-use crate::gpu::headless::readback;
+use crate::gpu::headless::{readback, tile_plan};
 use crate::gpu::passes::bands::{BandBuffers, tile_size};
 use crate::gpu::passes::emitter_table;
 use crate::gpu::scene::appearance;
@@ -24,6 +24,9 @@ use crate::verify::{Checker, Verdict};
 pub struct RenderPlan {
     /// The structure of all spheres, and the reason for its choice.
     pub accel: AccelPlan,
+    /// Returns true if the picture is rendered without the structure, by lists of the spheres that may be seen in each
+    /// tile of 8×8 pixels. [`Headless::render_planned`](crate::gpu::Headless::render_planned) does so.
+    pub by_tiles: bool,
     /// The structure of the spheres that cast shadows, if a studio needs a separate one because some spheres are not
     /// opaque.
     pub occluders: Option<AccelPlan>,
@@ -65,13 +68,15 @@ pub struct PictureRequest<'a> {
     /// Host memory in bytes that the caller needs for each pixel in addition to the image itself, for example to encode
     /// it.
     pub host_bytes_per_pixel: u64,
+    /// True if no other picture of the scene is wanted, so that nothing is kept for others.
+    pub is_only: bool,
 }
 
 impl<'a> PictureRequest<'a> {
     /// A picture for which the caller needs no host memory beyond the image.
     #[must_use]
     pub fn new(scene: &'a Scene, view: &View<'a>, settings: &'a RenderSettings, layers: LayerSet) -> Self {
-        Self { scene, view: *view, settings, layers, host_bytes_per_pixel: 0 }
+        Self { scene, view: *view, settings, layers, host_bytes_per_pixel: 0, is_only: false }
     }
 }
 
@@ -96,8 +101,17 @@ impl RenderPlan {
         let PictureRequest { scene, host_bytes_per_pixel, .. } = *request;
         let layers = if keeps_rays { LayerSet::DATA } else { request.layers };
         let (limits, film) = (&device.limits, &request.view.film);
-        let scene_buffers = scene_buffers(scene, &accel);
-        let tile_size = tile_size(limits, device.shape(), film, keeps_rays);
+        let may_be = !keeps_rays && request.is_only && request.settings.integrator.is_primary();
+        let by_tiles = may_be && tile_plan::suits(scene, &request.view, &accel, device);
+        let tile_size = match by_tiles {
+            true => tile_plan::part_size(&request.view, device),
+            false => tile_size(limits, device.shape(), film, keeps_rays),
+        };
+        let of_structure = match by_tiles {
+            true => tile_plan::buffers(scene.len(), tile_size),
+            false => accel.buffers.clone(),
+        };
+        let scene_buffers = scene_buffers(scene, of_structure);
         let band = BandBuffers::new(limits, tile_size, keeps_rays);
         let tile_buffers = band.planned();
         let mut tile_textures = band.planned_read_back();
@@ -116,9 +130,15 @@ impl RenderPlan {
         let picture = film.pixel_count().saturating_mul(per_pixel);
         let checker = Checker::BYTES_PER_SPHERE * scene.len() as u64;
         let checking = if keeps_rays { picture.saturating_add(checker) } else { 0 };
+        let [building, uploading] = if by_tiles {
+            let listing = tile_plan::building_bytes(scene.len());
+            [listing + scene_bytes + in_host(scene_bytes), listing + 2 * scene_bytes + in_host(scene_bytes)]
+        } else {
+            [device.building_bytes(&accel, &scene_buffers), device.uploading_bytes(&accel, &scene_buffers)]
+        };
         let moments = [
-            (BUILDING, device.building_bytes(&accel, &scene_buffers)),
-            (UPLOADING, device.uploading_bytes(&accel, &scene_buffers)),
+            (BUILDING, building),
+            (UPLOADING, uploading),
             (CHECKING, checking),
             (PICTURE, picture.saturating_add(in_host(scene_bytes + tile_bytes))),
         ];
@@ -126,6 +146,7 @@ impl RenderPlan {
         let (host_peak, host_bytes) = worst.unwrap_or((PICTURE, 0));
         Self {
             accel,
+            by_tiles,
             occluders: None,
             scene_buffers,
             tile_buffers,
@@ -138,11 +159,30 @@ impl RenderPlan {
         }
     }
 
+    /// Returns the structure by which [`Headless::render_planned`](crate::gpu::Headless::render_planned) finds spheres.
+    #[must_use]
+    pub fn structure(&self) -> Structure {
+        if self.by_tiles { Structure::Tiles } else { self.accel.structure }
+    }
+
+    /// Returns the reason for the choice of the structure.
+    #[must_use]
+    pub fn reason(&self) -> &str {
+        if self.by_tiles { "a single picture by one ray for each pixel" } else { &self.accel.reason }
+    }
+
+    /// Returns the number of bricks, or of the first of them if the picture is rendered by tiles, where more are made for
+    /// what is not hidden.
+    #[must_use]
+    pub fn brick_count(&self) -> usize {
+        if self.by_tiles { 1 } else { self.accel.brick_count }
+    }
+
     /// Returns the minimum number of submissions: one for every brick of every tile. There are usually more, because
     /// they are divided so that each takes about 60 milliseconds.
     #[must_use]
     pub fn least_submissions(&self) -> u64 {
-        self.tile_count * self.accel.brick_count as u64
+        self.tile_count * self.brick_count() as u64
     }
 
     /// Returns the mean number of bytes on the device for a sphere; `None` for an empty scene.
@@ -177,7 +217,7 @@ impl RenderPlan {
                 return Err(GpuError::Limit { what, needed, limit_name, limit });
             }
         }
-        let instead = match (self.host_peak, self.accel.structure) {
+        let instead = match (self.host_peak, self.structure()) {
             (PICTURE | CHECKING, _) => "a smaller size",
             (_, Structure::Grid) => "fewer spheres, or the structure `tree`",
             _ => "fewer spheres",
@@ -191,8 +231,7 @@ impl RenderPlan {
 }
 
 /// The buffers of the structure, and the buffers that shading reads.
-pub(crate) fn scene_buffers(scene: &Scene, accel: &AccelPlan) -> Vec<PlannedBuffer> {
-    let mut buffers = accel.buffers.clone();
+pub(crate) fn scene_buffers(scene: &Scene, mut buffers: Vec<PlannedBuffer>) -> Vec<PlannedBuffer> {
     let spheres = buffers.iter().find(|buffer| buffer.name == "spheres").copied();
     let words = appearance::words_per_sphere(scene.checked_appearance());
     if let Some(PlannedBuffer { bytes, bytes_per_binding, .. }) = spheres.filter(|_| words > 0) {
@@ -263,6 +302,7 @@ mod tests {
             settings: &RenderSettings::default(),
             layers,
             host_bytes_per_pixel: 16,
+            is_only: false,
         };
         let device = DeviceLimits { limits: Limits::default(), device_type };
         RenderPlan::planned(&request, accel, &device, keeps_rays)
@@ -308,7 +348,7 @@ mod tests {
         let mut spheres = spheres;
         for words in [1, 2] {
             let scene = Scene::from_parts(SphereArray::F32(spheres), appearance.clone()).unwrap();
-            let buffers = scene_buffers(&scene, &accel);
+            let buffers = scene_buffers(&scene, accel.buffers.clone());
             let bytes = |name| buffers.iter().find(|buffer| buffer.name == name).unwrap().bytes;
             assert_eq!((bytes("colors"), bytes("palette")), (4 * words * count as u64, 16 * 256));
             spheres = scene.spheres().to_vec();

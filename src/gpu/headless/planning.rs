@@ -12,7 +12,8 @@ use crate::render::RenderSettings;
 use crate::scene::Scene;
 
 impl RenderPlan {
-    /// Plans a picture on a device with the given limits and planned structures.
+    /// Plans a picture on a device with the given limits and planned structures. A picture that is the only one
+    /// of its scene may need none.
     #[must_use]
     pub fn new(request: &PictureRequest<'_>, structures: StructurePlans, device: &DeviceLimits) -> Self {
         if request.settings.integrator.is_primary() {
@@ -32,7 +33,9 @@ impl Headless {
         let accel = self.plan_accel(scene, choice);
         let opaque = settings.studio_parameters().and_then(|_| scene.opaque());
         let occluders = opaque.map(|opaque| self.plan_accel(&opaque, choice));
-        RenderPlan::new(request, StructurePlans { accel, occluders }, &self.device_limits())
+        let is_only = request.is_only && choice == AccelChoice::Auto && !self.leaves_loops_wrongly();
+        let request = PictureRequest { is_only, ..*request };
+        RenderPlan::new(&request, StructurePlans { accel, occluders }, &self.device_limits())
     }
 
     /// Plans [`Headless::record`] and the check of its recording, in the same way as [`Headless::plan`].
@@ -46,7 +49,7 @@ impl Headless {
         host_bytes_per_pixel: u64,
     ) -> RenderPlan {
         let (settings, layers) = (&RenderSettings::default(), LayerSet::DATA);
-        let request = PictureRequest { scene, view: *view, settings, layers, host_bytes_per_pixel };
+        let request = PictureRequest { scene, view: *view, settings, layers, host_bytes_per_pixel, is_only: false };
         let accel = self.plan_accel(scene, choice);
         RenderPlan::planned(&request, accel, &self.device_limits(), true)
     }
@@ -57,11 +60,9 @@ impl Headless {
         let binding = binding_limit(&self.device().limits());
         let planned = |choice| AccelPlan::new(scene.spheres(), choice, binding);
         let mut plan = planned(choice);
-        // `SwiftShader` of Chromium 156 has this defect: if invocations that run together leave a loop by `break` at
-        // different times, the first to leave lose the values that they assigned in the loop. Grids are traversed in
-        // such loops. Trees are not.
+        // Grids are traversed in loops that invocations leave at different times. Trees are not.
         let is_grid = matches!(plan.structure, Structure::Grid | Structure::NestedGrid);
-        if choice == AccelChoice::Auto && is_grid && self.info.name.starts_with("SwiftShader") {
+        if choice == AccelChoice::Auto && is_grid && self.leaves_loops_wrongly() {
             plan = planned(AccelChoice::Tree);
             plan.reason = format!("{} spheres, and this driver computes grids wrongly", scene.len());
         }
@@ -69,6 +70,12 @@ impl Headless {
             Some(whole) => plan.within((whole.min, whole.max)),
             None => plan,
         }
+    }
+
+    /// Whether this device has a defect of `SwiftShader` of Chromium 156: if invocations that run together leave a loop by
+    /// `break` at different times, the first to leave lose the values that they assigned in the loop.
+    fn leaves_loops_wrongly(&self) -> bool {
+        self.info.name.starts_with("SwiftShader")
     }
 
     /// Returns the properties of this device that bound the size of pictures and scenes.

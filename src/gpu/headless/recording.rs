@@ -5,7 +5,7 @@ use crate::camera::film::Film;
 use crate::camera::{Camera, PinholeCamera, View};
 use crate::gpu::edit::ShaderEdit;
 use crate::gpu::error::{GpuError, check_whole};
-use crate::gpu::headless::plan::RenderPlan;
+use crate::gpu::headless::plan::{PictureRequest, RenderPlan};
 use crate::gpu::headless::primary::Output;
 use crate::gpu::headless::progress::{Watch, go_on};
 use crate::gpu::headless::{Headless, retried};
@@ -115,6 +115,31 @@ impl Headless {
         Ok(recording)
     }
 
+    /// Renders the view of a recording as [`Headless::render`] does, if a single picture does not need the structure of
+    /// the recording, and compares both pictures in [`Recording::rendered`].
+    ///
+    /// # Errors
+    /// As for [`Headless::render`].
+    pub async fn compare_single(
+        &self,
+        recording: &mut Recording,
+        scene: &Scene,
+        view: &View<'_>,
+        settings: &RenderSettings,
+        watch: &mut Watch<'_>,
+    ) -> Result<(), GpuError> {
+        let request = PictureRequest { is_only: true, ..PictureRequest::new(scene, view, settings, LayerSet::DATA) };
+        let plan = self.plan(&request, AccelChoice::Auto);
+        if plan.by_tiles {
+            match self.render_planned(&request, &plan, &mut go_on, watch).await {
+                // Such pictures are rendered with the structure.
+                Err(GpuError::Steps) => {}
+                picture => recording.compare(picture?.image),
+            }
+        }
+        Ok(())
+    }
+
     /// Renders a picture of primary rays and decides whether a conforming device may have produced it. Checks the
     /// kernels of [`Headless::render`] and the kernels of [`Headless::record`], the latter stage by stage.
     ///
@@ -135,7 +160,9 @@ impl Headless {
             let buffers = self.upload_planned(scene, &plan.structures(), &mut go_on).await?;
             self.record_and_render(&buffers, view, settings, &mut go_on).await
         });
-        Ok(Checker::new(scene)?.certify(&recording.await?))
+        let mut recording = recording.await?;
+        self.compare_single(&mut recording, scene, view, settings, &mut go_on).await?;
+        Ok(Checker::new(scene)?.certify(&recording))
     }
 }
 

@@ -154,7 +154,7 @@ impl Headless {
     }
 
     /// Begins to build a renderer on a thread. A browser builds it later.
-    fn begin_renderer(&self, renderers: &mut Renderers, options: RendererOptions) {
+    pub(crate) fn begin_renderer(&self, renderers: &mut Renderers, options: RendererOptions) {
         #[cfg(not(target_arch = "wasm32"))]
         {
             renderers.begin(self.device(), options, self.options.profile.clone());

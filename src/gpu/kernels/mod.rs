@@ -61,6 +61,11 @@ pub(crate) fn all_kernels() -> Vec<Kernel> {
                 }
             }
         }
+        for kind in BrickKind::of(&[Structure::Tiles], Primitive::ALL) {
+            for brick_pass in [BrickPass::First, BrickPass::Later] {
+                kernels.push(trace_kernel(camera, kind, brick_pass, false));
+            }
+        }
         for &primitive in Primitive::ALL {
             for &color in ColorTarget::ALL {
                 for (data_layers, keeps_rays) in [(false, false), (true, false), (true, true)] {

@@ -35,6 +35,11 @@ impl VisibleBricks {
         Self { scene, bricks: order.into_iter().filter_map(region).collect(), nearest }
     }
 
+    /// Number of pixels of a tile in which the scene may be visible, in whole workgroups.
+    pub(crate) fn pixels_of(&self, tile: Tile) -> u64 {
+        self.scene.groups_of(tile).pixels()
+    }
+
     /// The bricks to be traced for a tile or a band, in order, and the workgroups that are dispatched for each. The
     /// first brick is traced wherever the scene may be visible, because its pass writes misses and records rays.
     pub(crate) fn parts_of(&self, tile: Tile) -> Vec<(usize, Groups)> {

@@ -155,6 +155,11 @@ impl<'a> SceneUpload<'a> {
         let mut boxes = None;
         match &brick.index {
             Index::List => {}
+            Index::Tiles(lists) => {
+                record.first_reference = record.shape_count;
+                record.cell_counts = [lists.columns, record.shape_count + lists.starts.len() as u32, 0];
+                with_ids.extend([bytemuck::cast_slice(&lists.starts), bytemuck::cast_slice(&lists.nears)]);
+            }
             Index::Grid(grid) => {
                 record.min = grid.min.to_array();
                 record.cell_size = grid.cell_size;

@@ -34,9 +34,12 @@ impl RenderPlan {
     }
 
     /// Returns the choice to try next if rays need too many steps in the planned structures: a tree instead of a grid,
-    /// or a list instead of a tree. It is `None` for lists, which always stay within the limit.
+    /// or a list instead of a tree; the planned structure instead of tiles. It is `None` for lists, which always stay within the limit.
     #[must_use]
     pub fn instead(&self) -> Option<AccelChoice> {
+        if self.by_tiles {
+            return Some(self.accel.structure.choice());
+        }
         let planned = self.occluders.iter().chain([&self.accel]).map(|plan| plan.structure);
         let others: Vec<AccelChoice> = planned.filter_map(Structure::instead).collect();
         // A tree may suffice for both structures, so it is tried before a list.
@@ -73,7 +76,7 @@ pub async fn with_retries<T, E>(
         let plan = plan(tried);
         match (work(&plan).await?, plan.instead()) {
             (Err(GpuError::Steps), Some(next)) if choice == AccelChoice::Auto => {
-                retrying(Retry { failed: plan.accel.structure, next });
+                retrying(Retry { failed: plan.structure(), next });
                 tried = next;
             }
             (done, _) => return Ok(done),
@@ -106,6 +109,7 @@ mod tests {
             settings: &settings,
             layers: LayerSet::COLOR,
             host_bytes_per_pixel: 0,
+            is_only: false,
         };
         let [accel, occluders] = choices.map(|choice| AccelPlan::new(scene.spheres(), choice, 1 << 27));
         let structures = StructurePlans { accel, occluders: Some(occluders) };

@@ -112,7 +112,7 @@ pub(crate) fn layout_of(device: &Device, label: &str, kinds: &[(u32, BindingType
 /// Binding types of the buffers of a structure besides its shapes and ids, from binding 3 on.
 fn word_buffers(structure: Structure) -> Vec<BindingType> {
     match structure {
-        Structure::List => vec![],
+        Structure::List | Structure::Tiles => vec![],
         Structure::RayQuery => vec![BindingType::AccelerationStructure { vertex_return: false }],
         Structure::WideTree | Structure::Grid | Structure::NestedGrid => {
             vec![storage::<[u32; 4]>(true)]

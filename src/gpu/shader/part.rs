@@ -31,7 +31,7 @@ macro_rules! files {
 /// The paths of all files relative to `shaders`, and their texts.
 const FILES: &[(&str, &str)] = files! {
     "accel": "ball_grid" "ball_list" "balls" "brick" "cell_words" "excluded" "grid_ray" "leaf" "list"
-        "nested_ball_cell" "nested_grid" "ray_query" "slab" "spend" "wide_group" "wide_node" "wide_tree";
+        "nested_ball_cell" "nested_grid" "nearest_hit" "ray_query" "slab" "spend" "tile_lists" "wide_group" "wide_node" "wide_tree";
     "camera": "camera_ray" "entry" "film" "film_sample" "filter" "fisheye" "orthographic" "panorama" "pinhole"
         "ray" "thin-lens";
     "host": "clip_depth" "composite" "cover" "covered" "farthest" "hide" "host_color" "host_depth" "host_view"
@@ -43,7 +43,7 @@ const FILES: &[(&str, &str)] = files! {
         "leave" "medium" "microfacet" "noise" "occlude" "queue" "scatter" "scatter_light" "schedule" "seen_light"
         "start" "state" "surface_point" "vertex" "whole_paths";
     "primary": "color_target" "data_layers" "denoise" "entry" "hit_before" "hits" "schedule" "shade"
-        "shade_entry" "shading" "status" "trace";
+        "shade_entry" "shading" "status" "trace" "trace_tile";
     "scene": "appearance" "appearance_words" "emitter" "emitters" "enter" "environment" "frame" "lamp"
         "lighting" "lighting_records" "material" "recolor" "records" "sky" "sphere";
     "self_test": "arithmetic" "exact" "loops" "records";

@@ -37,15 +37,19 @@ fn entered_kernel(
     brick_pass: BrickPass,
     entry: &'static str,
 ) -> Kernel {
-    let shape = primitive_part(primitive);
-    Kernel::new("trace", &[("$shape", shape), structure_choice(structure), ("$entry", entry)])
-        .with([camera_constant(camera), brick_pass.constant()])
+    let shape = ("$shape", primitive_part(primitive));
+    let kernel = match structure {
+        Structure::Tiles => Kernel::new("trace_tile", &[shape, ("$entry", entry)]),
+        _ => Kernel::new("trace", &[shape, structure_choice(structure), ("$entry", entry)]),
+    };
+    kernel.with([camera_constant(camera), brick_pass.constant()])
 }
 
 /// The choice of the parts that traverse a structure.
 pub(crate) fn structure_choice(structure: Structure) -> (&'static str, &'static str) {
     let list = match structure {
-        Structure::List => "list",
+        // Only camera rays are found by tiles.
+        Structure::List | Structure::Tiles => "list",
         Structure::RayQuery => "ray-query",
         Structure::WideTree => "wide-tree",
         Structure::Grid => "grid",

@@ -66,18 +66,22 @@ pub(crate) fn recorded(path: &Path, args: &VerifyArgs) -> Result<VerifyJob, Fail
     let choice = args.accel.accel.unwrap_or_default();
     let encoding = memory::ENCODING_BYTES_PER_PIXEL;
     let plan = |choice| headless.plan_record(scene, view, choice, encoding);
+    let decide = |progress: &Progress| {
+        progress::tracing(progress.part);
+        interrupt::decide()
+    };
     let done = with_structures(&headless, choice, plan, |plan| {
         interrupt::on_device(|| {
             let buffers = upload(&headless, scene, plan)?;
             progress::stage("preparing");
-            let watch = &mut |progress: &Progress| {
-                progress::tracing(progress.part);
-                interrupt::decide()
-            };
-            headless.record_and_render(&buffers, view, settings, watch).wait()
+            headless.record_and_render(&buffers, view, settings, &mut decide.clone()).wait()
         })
     })?;
-    let (recording, structure) = done.map_err(|error| explained_alone(&headless, &error))?;
+    let (mut recording, structure) = done.map_err(|error| explained_alone(&headless, &error))?;
+    if choice == AccelChoice::Auto {
+        let compared = || headless.compare_single(&mut recording, scene, view, settings, &mut decide.clone()).wait();
+        interrupt::on_device(compared)?.map_err(|error| explained_alone(&headless, &error))?;
+    }
     let provenance = provenance(&headless, structure);
     let chosen = (args.paths.unwrap_or(1), args.tile_seed);
     let scene = input.scene.clone();
@@ -118,7 +122,7 @@ fn certify_light(
     let Input { scene, settings, .. } = input;
     let (view, views) = (input.view(), views_of(input, input.film));
     let samples = chosen(settings.sampling.samples, count, settings.sampling.seed);
-    let plan = |choice| render::plan(headless, input, &views, LayerSet::COLOR, choice);
+    let plan = |choice| render::plan(headless, input, &views, LayerSet::COLOR, choice, false);
     let tile_seed = tile_seed.unwrap_or_else(any_seed);
     let done = with_structures(headless, choice, plan, |plan| {
         let uploaded = interrupt::on_device(|| upload(headless, scene, plan))?;

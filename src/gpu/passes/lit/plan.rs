@@ -83,6 +83,7 @@ impl RenderPlan {
         let (host_peak, host_bytes) = worst.unwrap_or((PICTURE, 0));
         Self {
             accel: data.accel,
+            by_tiles: false,
             occluders,
             scene_buffers,
             tile_buffers,
@@ -98,7 +99,7 @@ impl RenderPlan {
 
 /// The buffers of the structure of occluders. Its only appearance data are a palette of one colour.
 fn shadow_buffers(scene: &Scene, plan: &AccelPlan) -> Vec<PlannedBuffer> {
-    scene_buffers(scene, plan).into_iter().filter(|buffer| buffer.name != "colors").collect()
+    scene_buffers(scene, plan.buffers.clone()).into_iter().filter(|buffer| buffer.name != "colors").collect()
 }
 
 #[cfg(test)]
@@ -136,6 +137,7 @@ mod tests {
         let structures = StructurePlans { accel: plan(&scene), occluders };
         let device = DeviceLimits { limits: Limits::default(), device_type };
         let request = PictureRequest {
+            is_only: false,
             scene: &scene,
             view: View::new(&camera, film),
             settings,

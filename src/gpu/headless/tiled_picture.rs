@@ -1,0 +1,170 @@
+//! Rendering one picture of primary rays by lists of the spheres that may be seen in each tile, without a structure.
+
+use crate::accel::tile_lists::{NoBrick, TileBricks};
+use crate::accel::tiles::SIDE;
+use crate::accel::{Brick, BrickBounds, BrickKind, Primitive, Structure};
+use crate::gpu::checks::scoped;
+use crate::gpu::error::GpuError;
+use crate::gpu::headless::Headless;
+use crate::gpu::headless::plan::{PictureRequest, RenderPlan};
+use crate::gpu::headless::primary::begin_pass;
+use crate::gpu::headless::progress::{TracedPixels, UploadProgress, UploadStep, UploadWatch, Watch};
+use crate::gpu::headless::readback::{DerivedLayers, ReadableBuffer, TileTextures};
+use crate::gpu::headless::renderers::Renderers;
+use crate::gpu::headless::tile_plan::tile_view;
+use crate::gpu::passes::frame::{BandBrick, Frame};
+use crate::gpu::passes::renderer_options::RendererOptions;
+use crate::gpu::passes::tiles::{Groups, tiles};
+use crate::gpu::passes::visible_bricks::VisibleBricks;
+use crate::gpu::profile::NotedPass;
+use crate::gpu::scene::scene_buffers::SceneBuffers;
+use crate::gpu::scene::scene_summary::{SceneSummary, ShapeIds};
+use crate::gpu::scene::scene_upload::{BrickSpace, SceneUpload, UploadedBricks};
+use crate::gpu::shader::records::Hit;
+use crate::image::{Image, LayerSet, NO_ID};
+use crate::parallel::map;
+
+impl Headless {
+    /// Renders a picture by tiles.
+    pub(crate) async fn render_by_tiles(
+        &self,
+        request: &PictureRequest<'_>,
+        plan: &RenderPlan,
+        upload_watch: &mut UploadWatch<'_>,
+        watch: &mut Watch<'_>,
+    ) -> Result<Image, GpuError> {
+        let PictureRequest { scene, view, settings, layers, .. } = request;
+        let data_layers = *layers != LayerSet::COLOR;
+        let (device, queue, film) = (self.device(), self.queue(), &view.film);
+        let kind = BrickKind { structure: Structure::Tiles, primitive: Primitive::Sphere };
+        let options_of = |several_bricks| {
+            let options = self.options_of(&[kind], several_bricks, view.camera);
+            RendererOptions { data_layers, ..options }
+        };
+        let brick_space = BrickSpace { structure: kind.structure, bounds: plan.accel.statistics.inflated_bounds() };
+        // In every brick, the nearest of equal spheres has the smallest id, so the ids of the input suffice.
+        let ids = ShapeIds::of_all(scene, false);
+        let mut image = Image::new(film.width(), film.height(), *layers)?;
+        self.alone(async |renderers: &mut Renderers| {
+            let layouts = self.layouts_of(vec![kind.structure]).await?;
+            self.begin_renderer(renderers, options_of(false));
+            let summary = SceneSummary::of(scene);
+            let no_bricks = UploadedBricks { space: brick_space, bricks: Vec::new(), bytes: 0 };
+            let mut buffers = SceneBuffers::new_of(no_bricks, summary, ids.exclude_by, self.shape());
+            let primary = buffers.primary_settings(settings)?;
+            let bounds = BrickBounds::of_box(brick_space.bounds);
+            let visible = VisibleBricks::of(view, &buffers.space, &[bounds]);
+            // The last of the pixels are done once all bricks are.
+            let last = Groups { first: [0, 0], size: [1, 1] };
+            let traced: u64 = tiles(film, plan.tile_size).map(|tile| visible.pixels_of(tile)).sum();
+            let mut done = TracedPixels::of(traced + last.pixels());
+            for tile in tiles(film, plan.tile_size) {
+                let textures = scoped(device, || TileTextures::new(device, tile.size, data_layers)).await?;
+                let tiles = tile_view(view, &buffers.space, plan.accel.statistics.margin(), tile);
+                // Another structure is tried.
+                let Some(tiles) = tiles else { return Err(GpuError::Steps) };
+                let mut bricks = TileBricks::new(tiles, scene.spheres());
+                let mut farthest = vec![f32::INFINITY; tiles.count()];
+                let mut upload = SceneUpload::new(&layouts, device, queue, &buffers.summary, brick_space, &ids).await?;
+                let mut frame: Option<(Frame, BandBrick, ReadableBuffer)> = None;
+                let mut all = Brick::default();
+                loop {
+                    let number = bricks.made();
+                    let mut tell = |step| UploadProgress { step, brick: number, bricks: number + 1 }.tell(upload_watch);
+                    tell(UploadStep::Building)?;
+                    let phase = self.phase("build");
+                    let brick = match bricks.next(&farthest) {
+                        Ok(brick) => brick,
+                        Err(NoBrick::Done) => break,
+                        Err(NoBrick::TooMany) => return Err(GpuError::Steps),
+                    };
+                    drop(phase);
+                    tell(UploadStep::Copying)?;
+                    let phase = self.phase("upload");
+                    upload.brick(&brick).await?;
+                    drop(phase);
+                    buffers.bricks = upload.take_bricks();
+                    all.spheres.extend_from_slice(&brick.spheres);
+                    all.ids.extend_from_slice(&brick.ids);
+                    drop(brick);
+                    let renderer = renderers.of(device, options_of(number > 0)).await?;
+                    if frame.is_none() {
+                        let mut new = Frame::new(renderer, device, &textures.targets()).await?;
+                        new.set_bricks(queue, &buffers, &visible, view, tile, &primary);
+                        let Some(part) = new.parts().next() else { break };
+                        let hits = new.traced().0.size();
+                        let hits = scoped(device, || ReadableBuffer::new(device, "pinhole hits read-back", hits));
+                        frame = Some((new, part, hits.await?));
+                    }
+                    let Some((frame, part, hits)) = &mut frame else { break };
+                    let part = BandBrick { is_first_of_band: number == 0, ..*part };
+                    let mut left = vec![part.groups];
+                    while let Some(groups) = Groups::take(&mut left, buffers.submission_size().groups()) {
+                        frame.set_first_group(queue, part.slot, groups.first);
+                        let (mut encoder, mut noted) = (self.encoder(), NotedPass::default());
+                        let mut pass = begin_pass(&mut encoder, &mut noted, "trace");
+                        renderer.record_trace(&mut pass, &buffers, frame, BandBrick { groups, ..part })?;
+                        drop(pass);
+                        self.submit_slice(encoder, noted, groups, &buffers, &[]).await?;
+                        done.add(if number == 0 { groups } else { Groups::NONE }, watch)?;
+                    }
+                    if !bricks.may_go_on() {
+                        break;
+                    }
+                    let mut encoder = self.encoder();
+                    hits.record_copy(&mut encoder, frame.traced().0);
+                    self.run(encoder, &[&hits.buffer]).await?;
+                    let region = frame.traced_groups(part.slot);
+                    farthest = hits.read(|hits| farthest_of(hits, tile.size, region))?;
+                }
+                let Some((frame, part, _)) = &frame else { continue };
+                if bricks.made() > 1 {
+                    // Indices of shapes count the shapes of all bricks, so that one pass shades them all.
+                    let mut upload =
+                        SceneUpload::new(&layouts, device, queue, &buffers.summary, brick_space, &ids).await?;
+                    upload.brick(&all).await?;
+                    buffers.bricks = upload.take_bricks();
+                }
+                let renderer = renderers.of(device, options_of(bricks.made() > 1)).await?;
+                let (mut encoder, mut noted) = (self.encoder(), NotedPass::default());
+                let mut pass = begin_pass(&mut encoder, &mut noted, "shade");
+                renderer.record_shade(&mut pass, &buffers, frame, part.band)?;
+                drop(pass);
+                let mapped = textures.record_read_back(&mut encoder, frame, tile.size);
+                self.run_timed(encoder, noted, &mapped).await?;
+                let derived = DerivedLayers { view: *view, appearance: buffers.appearance() };
+                textures.read_into(&mut image, tile, &derived)?;
+            }
+            done.add(last, watch)?;
+            Ok(image)
+        })
+        .await
+    }
+}
+
+/// The distance of the farthest hit of each tile, row by row, which is infinite if a ray hits nothing. In tiles that are
+/// not traced it is less than all distances.
+fn farthest_of(hits: &[Hit], size: [u32; 2], traced: Groups) -> Vec<f32> {
+    let [columns, rows] = size.map(|side| side.div_ceil(SIDE));
+    let of_row = |row: usize| -> Vec<f32> {
+        let mut farthest = vec![f32::NEG_INFINITY; columns as usize];
+        if !(traced.first[1]..traced.first[1] + traced.size[1]).contains(&(row as u32)) {
+            return farthest;
+        }
+        let side = SIDE as usize;
+        let (width, end) = (size[0] as usize, ((row + 1) * side).min(size[1] as usize));
+        for hits in (row * side..end).map(|j| &hits[j * width..(j + 1) * width]) {
+            let is_traced = |i: &u32| (traced.first[0]..traced.first[0] + traced.size[0]).contains(i);
+            for (i, hits) in (0..).zip(hits.chunks(side)).filter(|(i, _)| is_traced(i)) {
+                let distance = |[t, id, _, distance]: &Hit| match *id {
+                    NO_ID => f32::INFINITY,
+                    _ => f32::from_bits(*t) + f32::from_bits(*distance),
+                };
+                let most = hits.iter().map(distance).fold(f32::NEG_INFINITY, f32::max);
+                farthest[i as usize] = farthest[i as usize].max(most);
+            }
+        }
+        farthest
+    };
+    map(rows as usize, of_row).concat()
+}
