@@ -15,8 +15,9 @@
 //! and radius r if (x A·c + B·c)² = r² |x A + B|², which is a quadratic equation. With N = A × B, its discriminant is
 //! r² |N|² (ρ² − r²), where ρ is the distance of the centre from the axis through the eye along N, so that no difference
 //! of large numbers is taken (Mara et al., "2D Polyhedral Bounds of a Clipped, Perspective-Projected 3D Sphere",
-//! JCGT 2013, have the same bounds for cameras without a shift). A sphere that comes near the eye's plane is seen
-//! everywhere. All of this is in f64, whose errors are less than [`PAD`].
+//! JCGT 2013, have the same bounds for cameras without a shift). Of a sphere through the eye's plane, which does not meet
+//! the axis, the part in front is seen from one root on, on the side where the sphere meets the plane; a sphere that comes
+//! near the axis is seen everywhere along it. All of this is in f64, whose errors are less than [`PAD`].
 //!
 //! The *near* distance of a sphere is a lower bound of `distance + t` of its hits in kernels: the reported point is
 //! within r + margin of the centre, and the ray and its distances from the eye are off by less than 64 u (S + T), where T
@@ -30,11 +31,11 @@ use crate::geometry::math::unit;
 pub(crate) const SIDE: u32 = 8;
 
 /// Extra pixels on each side of a sphere's rectangle, for errors in f64: relative to the picture they are less than
-/// 2⁻³², because spheres that come as near to the eye's plane as [`NEAR_PLANE`] allows are seen everywhere.
+/// 2⁻³², because spheres that come as near to an axis as [`NEAR_AXIS`] allows are seen everywhere along it.
 const PAD: f64 = 1.0 / (1 << 12) as f64;
 
-/// A sphere is near the eye's plane if its distance from there is at most its radius times 1 plus this.
-const NEAR_PLANE: f64 = 1e-6;
+/// A sphere is near an axis if the square of its distance from there is at most that of its radius times 1 plus this.
+const NEAR_AXIS: f64 = 1e-6;
 
 /// The error of camera rays as a fraction of the lengths from which they are computed: 64 u.
 const RAY_PART: f64 = 1.0 / (1 << 18) as f64;
@@ -95,6 +96,7 @@ struct Axis {
     b: DVec3,
     aa: f64,
     ab: f64,
+    bb: f64,
     /// Unit vector of a × b, and its length.
     n: DVec3,
     n_length: f64,
@@ -181,12 +183,10 @@ impl TileView {
             return None;
         }
         let mut range = TileRange { first: [0; 2], last: self.tiles.map(|count| (count - 1) as u16) };
-        if self.is_parallel || depth > wide * (1.0 + NEAR_PLANE) {
-            for (index, axis) in self.axes.iter().enumerate() {
-                let seen = if self.is_parallel { axis.parallel(center, wide) } else { axis.perspective(center, wide) };
-                let [first, last] = axis.pixels_of(seen)?;
-                (range.first[index], range.last[index]) = (first, last);
-            }
+        for (index, axis) in self.axes.iter().enumerate() {
+            let seen = if self.is_parallel { axis.parallel(center, wide) } else { axis.perspective(center, wide) };
+            let [first, last] = axis.pixels_of(seen)?;
+            (range.first[index], range.last[index]) = (first, last);
         }
         Some(range)
     }
@@ -203,6 +203,7 @@ impl Axis {
             b,
             aa: a.length_squared(),
             ab: a.dot(b),
+            bb: b.length_squared(),
             n: unit(n)?,
             n_length: n.length(),
             b_length: b.length(),
@@ -212,16 +213,27 @@ impl Axis {
         })
     }
 
-    /// The locations between which a sphere in front of the eye's plane is seen.
+    /// The locations between which the part of a sphere is seen that is in front of the eye's plane.
     #[inline]
     fn perspective(&self, center: DVec3, radius: f64) -> [f64; 2] {
         let (along_a, along_b) = (self.a.dot(center), self.b.dot(center));
         let squared = radius * radius;
-        let scale = 1.0 / (along_a * along_a - squared * self.aa);
-        let middle = squared * self.ab - along_a * along_b;
         let from_axis = center.cross(self.n).length_squared();
-        let reach = radius * self.n_length * (from_axis - squared).max(0.0).sqrt();
-        [(middle - reach) * scale, (middle + reach) * scale]
+        if from_axis <= squared * (1.0 + NEAR_AXIS) {
+            return [f64::NEG_INFINITY, f64::INFINITY];
+        }
+        // a x² + 2 b x + c = 0, by the form of the roots in which nothing cancels.
+        let a = along_a * along_a - squared * self.aa;
+        let b = along_a * along_b - squared * self.ab;
+        let c = along_b * along_b - squared * self.bb;
+        let q = -(b + (radius * self.n_length * (from_axis - squared).sqrt()).copysign(b));
+        let (one, other) = (q / a, c / q);
+        if a > 0.0 {
+            return [one.min(other), one.max(other)];
+        }
+        // The sphere goes through the eye's plane, on one side of the axis.
+        let is_beyond = along_b * self.aa < along_a * self.ab;
+        if is_beyond { [one.max(other), f64::INFINITY] } else { [f64::NEG_INFINITY, one.min(other)] }
     }
 
     /// The locations between which a sphere is seen by parallel rays.
@@ -353,8 +365,12 @@ mod tests {
         // Between the centres of pixels there is nothing.
         assert_eq!(at(0.0, 0.001), None);
         assert_eq!(view.range([0.0, 0.0, -1.0, 0.5]), None);
-        // The eye is in the sphere, or near its plane.
+        // The eye is in the sphere.
         assert_eq!(at(0.0, 1.5).map(|range| range.count()), Some(10_000));
-        assert_eq!(view.range([5.0, 0.0, 0.5, 0.5]).map(|range| range.count()), Some(10_000));
+        // Spheres through the eye's plane, beside the picture and at its right edge.
+        assert_eq!(view.range([5.0, 0.0, 0.5, 0.5]), None);
+        assert_eq!(view.range([-5.0, 0.0, -0.2, 0.5]), None);
+        let range = TileRange { first: [68, 0], last: [99, 99] };
+        assert_eq!(view.range([1.0, 0.0, 0.4, 0.8]), Some(range));
     }
 }
