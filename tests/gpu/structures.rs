@@ -185,10 +185,11 @@ fn by_tiles(headless: &Headless, views: &[View]) -> Vec<Image> {
     views.iter().map(|view| by_tiles(view).unwrap()).collect()
 }
 
-/// So many spheres that lists are made in slabs of depth, and so many in one place that a slab needs several bricks.
+/// So many spheres that lists are made in slabs of depth, and so many in one place that a slab needs several bricks, which
+/// are not all shaded together.
 fn slabs(headless: &'static Headless) {
     let mut heap = spheres::random(1_000, 5, |_| 0.02);
-    heap.extend(vec![[0.4, 0.5, 0.6, 0.01]; 20_000]);
+    heap.extend(vec![[0.1, 0.1, 0.1, 0.2]; 100_000]);
     for spheres in [spheres::random(300_000, 4, |rng| if rng.u32(..1000) == 0 { 0.05 } else { 0.004 }), heap] {
         let scene = white(spheres);
         let views = views(&scene);

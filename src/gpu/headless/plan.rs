@@ -131,7 +131,7 @@ impl RenderPlan {
         let checker = Checker::BYTES_PER_SPHERE * scene.len() as u64;
         let checking = if keeps_rays { picture.saturating_add(checker) } else { 0 };
         let [building, uploading] = if by_tiles {
-            let listing = tile_plan::building_bytes(scene.len());
+            let listing = tile_plan::building_bytes(scene.len(), tile_size);
             [listing + scene_bytes + in_host(scene_bytes), listing + 2 * scene_bytes + in_host(scene_bytes)]
         } else {
             [device.building_bytes(&accel, &scene_buffers), device.uploading_bytes(&accel, &scene_buffers)]

@@ -75,18 +75,26 @@ pub(crate) fn part_size(view: &View<'_>, device: &DeviceLimits) -> [u32; 2] {
     [width, if rows < height { (rows / SIDE).max(1) * SIDE } else { height }]
 }
 
+/// The most places in one brick of lists for a part of a picture.
+pub(crate) fn places(spheres: usize, part: [u32; 2]) -> u64 {
+    // The last sphere of a brick may be in all tiles.
+    most_places(spheres) as u64 + tile_count(part)
+}
+
+fn tile_count(part: [u32; 2]) -> u64 {
+    part.iter().map(|side| u64::from(side.div_ceil(SIDE))).product()
+}
+
 /// The buffers of one brick of lists for a part of a picture.
 pub(crate) fn buffers(spheres: usize, part: [u32; 2]) -> Vec<PlannedBuffer> {
-    let tiles = part.map(|side| u64::from(side.div_ceil(SIDE))).iter().product::<u64>();
-    // The last sphere of a brick may be in all tiles.
-    let places = most_places(spheres) as u64 + tiles;
+    let (places, tiles) = (places(spheres, part), tile_count(part));
     vec![PlannedBuffer::one("spheres", 16 * places), PlannedBuffer::one("ids", 4 * (2 * places + tiles + 1))]
 }
 
 /// The most host memory that making a brick takes, in addition to it.
-pub(crate) fn building_bytes(spheres: usize) -> u64 {
-    // The spheres of a slab, once more while they are merged.
-    40 * spheres as u64
+pub(crate) fn building_bytes(spheres: usize, part: [u32; 2]) -> u64 {
+    // The spheres of a slab, once more while they are merged; and those that are shaded together.
+    40 * spheres as u64 + 20 * places(spheres, part)
 }
 
 #[cfg(test)]

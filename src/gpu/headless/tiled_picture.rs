@@ -11,8 +11,9 @@ use crate::gpu::headless::primary::begin_pass;
 use crate::gpu::headless::progress::{TracedPixels, UploadProgress, UploadStep, UploadWatch, Watch};
 use crate::gpu::headless::readback::{DerivedLayers, ReadableBuffer, TileTextures};
 use crate::gpu::headless::renderers::Renderers;
-use crate::gpu::headless::tile_plan::tile_view;
+use crate::gpu::headless::tile_plan::{self, tile_view};
 use crate::gpu::passes::frame::{BandBrick, Frame};
+use crate::gpu::passes::renderer::Renderer;
 use crate::gpu::passes::renderer_options::RendererOptions;
 use crate::gpu::passes::tiles::{Groups, tiles};
 use crate::gpu::passes::visible_bricks::VisibleBricks;
@@ -67,7 +68,8 @@ impl Headless {
                 let mut farthest = vec![f32::INFINITY; tiles.count()];
                 let mut upload = SceneUpload::new(&layouts, device, queue, &buffers.summary, brick_space, &ids).await?;
                 let mut frame: Option<(Frame, BandBrick, ReadableBuffer)> = None;
-                let mut all = Brick::default();
+                let places = tile_plan::places(scene.len(), tile.size) as usize;
+                let mut traced = Traced::default();
                 loop {
                     let number = bricks.made();
                     let mut tell = |step| UploadProgress { step, brick: number, bricks: number + 1 }.tell(upload_watch);
@@ -79,14 +81,22 @@ impl Headless {
                         Err(NoBrick::TooMany) => return Err(GpuError::Steps),
                     };
                     drop(phase);
+                    if let (true, Some((frame, part, _))) = (traced.places() + brick.spheres.len() > places, &frame) {
+                        traced.upload(self, (&layouts, &ids), &mut buffers).await?;
+                        let renderer = renderers.of(device, options_of(number > 1)).await?;
+                        let (mut encoder, mut noted) = (self.encoder(), NotedPass::default());
+                        let mut pass = begin_pass(&mut encoder, &mut noted, "shade");
+                        renderer.record_shade(&mut pass, &buffers, frame, part.band)?;
+                        drop(pass);
+                        self.run_timed(encoder, noted, &[]).await?;
+                        traced = traced.after();
+                    }
                     tell(UploadStep::Copying)?;
                     let phase = self.phase("upload");
                     upload.brick(&brick).await?;
                     drop(phase);
                     buffers.bricks = upload.take_bricks();
-                    all.spheres.extend_from_slice(&brick.spheres);
-                    all.ids.extend_from_slice(&brick.ids);
-                    drop(brick);
+                    traced.add(brick);
                     let renderer = renderers.of(device, options_of(number > 0)).await?;
                     if frame.is_none() {
                         let mut new = Frame::new(renderer, device, &textures.targets()).await?;
@@ -118,13 +128,7 @@ impl Headless {
                     farthest = hits.read(|hits| farthest_of(hits, tile.size, region))?;
                 }
                 let Some((frame, part, _)) = &frame else { continue };
-                if bricks.made() > 1 {
-                    // Indices of shapes count the shapes of all bricks, so that one pass shades them all.
-                    let mut upload =
-                        SceneUpload::new(&layouts, device, queue, &buffers.summary, brick_space, &ids).await?;
-                    upload.brick(&all).await?;
-                    buffers.bricks = upload.take_bricks();
-                }
+                traced.upload(self, (&layouts, &ids), &mut buffers).await?;
                 let renderer = renderers.of(device, options_of(bricks.made() > 1)).await?;
                 let (mut encoder, mut noted) = (self.encoder(), NotedPass::default());
                 let mut pass = begin_pass(&mut encoder, &mut noted, "shade");
@@ -139,6 +143,52 @@ impl Headless {
             Ok(image)
         })
         .await
+    }
+}
+
+/// Bricks that were traced and will be shaded by one pass.
+#[derive(Default)]
+struct Traced {
+    all: Brick,
+    bricks: usize,
+    /// Number of shapes of the bricks before these.
+    before: u32,
+}
+
+impl Traced {
+    fn places(&self) -> usize {
+        self.all.spheres.len()
+    }
+
+    fn add(&mut self, brick: Brick) {
+        self.all.spheres.extend(brick.spheres);
+        self.all.ids.extend(brick.ids);
+        self.bricks += 1;
+    }
+
+    /// None of the bricks that come after these.
+    fn after(self) -> Self {
+        Self { before: self.before + self.places() as u32, ..Self::default() }
+    }
+
+    /// Copies the bricks as one, unless the one that was traced last is the only one. Indices of shapes count those of
+    /// all bricks, so that one pass shades these.
+    async fn upload(
+        &self,
+        headless: &Headless,
+        (layouts, ids): (&Renderer, &ShapeIds),
+        buffers: &mut SceneBuffers,
+    ) -> Result<(), GpuError> {
+        if self.bricks > 1 {
+            let space = BrickSpace { structure: Structure::Tiles, bounds: (buffers.space.min, buffers.space.max) };
+            let (device, queue) = (headless.device(), headless.queue());
+            buffers.bricks.clear();
+            let upload = SceneUpload::new(layouts, device, queue, &buffers.summary, space, ids).await?;
+            let mut upload = upload.after(self.before);
+            upload.brick(&self.all).await?;
+            buffers.bricks = upload.take_bricks();
+        }
+        Ok(())
     }
 }
 

@@ -123,6 +123,11 @@ impl<'a> SceneUpload<'a> {
         })
     }
 
+    /// The state in which the shapes of earlier bricks have been counted.
+    pub(crate) fn after(self, shapes: u32) -> Self {
+        Self { first_shape: shapes, ..self }
+    }
+
     /// Queues the copy of a brick. The brick can be dropped afterwards.
     pub(crate) async fn brick(&mut self, brick: &Brick) -> Result<(), GpuError> {
         let (renderer, device, queue) = (self.renderer, self.device, self.queue);
