@@ -115,7 +115,7 @@ impl<'a> TileBricks<'a> {
         self.bricks
     }
 
-    /// Whether there may be more bricks.
+    /// True if there may be more bricks.
     pub(crate) fn may_go_on(&self) -> bool {
         !self.left.is_empty() || self.ends.len() > 0
     }

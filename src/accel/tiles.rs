@@ -51,7 +51,7 @@ pub(crate) struct TileCamera {
     pub(crate) right: DVec3,
     pub(crate) down: DVec3,
     pub(crate) forward: DVec3,
-    /// Whether all rays have the direction `forward`.
+    /// True if all rays have the direction `forward`.
     pub(crate) is_parallel: bool,
     /// Width and height of the whole film.
     pub(crate) film: [u32; 2],
@@ -70,9 +70,9 @@ pub(crate) struct TileView {
     is_parallel: bool,
     /// Number of tiles along each side.
     tiles: [u32; 2],
-    /// By how much spheres are larger in f64 than on the device.
+    /// The length that is added to radii, for rounding on the device.
     widening: f64,
-    /// By how much hits may be nearer than the nearest point of a sphere.
+    /// The length by which hits may be nearer than the nearest point of a sphere.
     nearer: f64,
 }
 
@@ -149,7 +149,7 @@ impl TileView {
         })
     }
 
-    /// By how much spheres are larger than on the device.
+    /// The length that is added to radii.
     #[cfg(test)]
     pub(crate) fn widening(&self) -> f64 {
         self.widening

@@ -163,10 +163,7 @@ impl Headless {
                     done.add(groups, watch)?;
                 }
                 // Pixels whose sphere a later brick hides will be shaded again.
-                let (mut encoder, mut noted) = (self.encoder(), NotedPass::default());
-                let mut pass = begin_pass(&mut encoder, &mut noted, "shade");
-                renderer.record_shade(&mut pass, &scene, &frame, part.band)?;
-                drop(pass);
+                let (mut encoder, noted) = self.shading(renderer, &scene, &frame, part.band)?;
                 if number + 1 == parts.len() {
                     self.run_timed(encoder, noted, &[]).await?;
                     break;
@@ -253,14 +250,18 @@ pub(crate) struct NearestDistances {
 /// Relative distance by which a box must be farther than a hit. It is more than the rounding of distances in f32.
 const FARTHER: f64 = 1.0 / (1 << 18) as f64;
 
+/// The distance of a hit from the camera, which is infinite for a miss.
+pub(crate) fn distance_of([t, id, _, distance]: &Hit) -> f32 {
+    match *id {
+        NO_ID => f32::INFINITY,
+        _ => f32::from_bits(*t) + f32::from_bits(*distance),
+    }
+}
+
 impl NearestDistances {
     /// The distances of hits that a kernel has written.
     pub(crate) fn new(size: [u32; 2], hits: &[Hit]) -> Self {
-        let distance = |[t, id, _, distance]: &Hit| match *id {
-            NO_ID => f32::INFINITY,
-            _ => f32::from_bits(*t) + f32::from_bits(*distance),
-        };
-        Self { size, distances: hits.iter().map(distance).collect() }
+        Self { size, distances: hits.iter().map(distance_of).collect() }
     }
 
     /// Whether the ray of every pixel of some workgroups misses a box or hits something before it. Always false for

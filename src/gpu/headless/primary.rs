@@ -141,6 +141,21 @@ impl Headless {
     }
 }
 
+impl Headless {
+    /// Begins commands with the shading of a band.
+    pub(crate) fn shading(
+        &self,
+        renderer: &Renderer,
+        scene: &SceneBuffers,
+        frame: &Frame,
+        band: usize,
+    ) -> Result<(wgpu::CommandEncoder, NotedPass), GpuError> {
+        let (mut encoder, mut noted) = (self.encoder(), NotedPass::default());
+        renderer.record_shade(&mut begin_pass(&mut encoder, &mut noted, "shade"), scene, frame, band)?;
+        Ok((encoder, noted))
+    }
+}
+
 /// Begins a compute pass, and notes its name.
 pub(crate) fn begin_pass<'a>(
     encoder: &'a mut wgpu::CommandEncoder,

@@ -50,7 +50,7 @@ fn space_of(scene_origin: glam::DVec3, plan: &AccelPlan) -> SceneSpace {
     SceneSpace { origin: scene_origin, min, max }
 }
 
-/// Whether a picture is rendered by tiles, rather than by a structure.
+/// Decides if a picture is rendered by tiles, rather than by a structure.
 ///
 /// Only software devices were measured: there, one picture takes less time than building the structure for it.
 pub(crate) fn suits(scene: &Scene, view: &View<'_>, plan: &AccelPlan, device: &DeviceLimits) -> bool {

@@ -6,6 +6,7 @@ use crate::accel::{Brick, BrickBounds, BrickKind, Primitive, Structure};
 use crate::gpu::checks::scoped;
 use crate::gpu::error::GpuError;
 use crate::gpu::headless::Headless;
+use crate::gpu::headless::one_picture::distance_of;
 use crate::gpu::headless::plan::{PictureRequest, RenderPlan};
 use crate::gpu::headless::primary::begin_pass;
 use crate::gpu::headless::progress::{TracedPixels, UploadProgress, UploadStep, UploadWatch, Watch};
@@ -22,7 +23,7 @@ use crate::gpu::scene::scene_buffers::SceneBuffers;
 use crate::gpu::scene::scene_summary::{SceneSummary, ShapeIds};
 use crate::gpu::scene::scene_upload::{BrickSpace, SceneUpload, UploadedBricks};
 use crate::gpu::shader::records::Hit;
-use crate::image::{Image, LayerSet, NO_ID};
+use crate::image::{Image, LayerSet};
 use crate::parallel::map;
 
 impl Headless {
@@ -84,10 +85,7 @@ impl Headless {
                     if let (true, Some((frame, part, _))) = (traced.places() + brick.spheres.len() > places, &frame) {
                         traced.upload(self, (&layouts, &ids), &mut buffers).await?;
                         let renderer = renderers.of(device, options_of(number > 1)).await?;
-                        let (mut encoder, mut noted) = (self.encoder(), NotedPass::default());
-                        let mut pass = begin_pass(&mut encoder, &mut noted, "shade");
-                        renderer.record_shade(&mut pass, &buffers, frame, part.band)?;
-                        drop(pass);
+                        let (encoder, noted) = self.shading(renderer, &buffers, frame, part.band)?;
                         self.run_timed(encoder, noted, &[]).await?;
                         traced = traced.after();
                     }
@@ -130,10 +128,7 @@ impl Headless {
                 let Some((frame, part, _)) = &frame else { continue };
                 traced.upload(self, (&layouts, &ids), &mut buffers).await?;
                 let renderer = renderers.of(device, options_of(bricks.made() > 1)).await?;
-                let (mut encoder, mut noted) = (self.encoder(), NotedPass::default());
-                let mut pass = begin_pass(&mut encoder, &mut noted, "shade");
-                renderer.record_shade(&mut pass, &buffers, frame, part.band)?;
-                drop(pass);
+                let (mut encoder, noted) = self.shading(renderer, &buffers, frame, part.band)?;
                 let mapped = textures.record_read_back(&mut encoder, frame, tile.size);
                 self.run_timed(encoder, noted, &mapped).await?;
                 let derived = DerivedLayers { view: *view, appearance: buffers.appearance() };
@@ -206,11 +201,7 @@ fn farthest_of(hits: &[Hit], size: [u32; 2], traced: Groups) -> Vec<f32> {
         for hits in (row * side..end).map(|j| &hits[j * width..(j + 1) * width]) {
             let is_traced = |i: &u32| (traced.first[0]..traced.first[0] + traced.size[0]).contains(i);
             for (i, hits) in (0..).zip(hits.chunks(side)).filter(|(i, _)| is_traced(i)) {
-                let distance = |[t, id, _, distance]: &Hit| match *id {
-                    NO_ID => f32::INFINITY,
-                    _ => f32::from_bits(*t) + f32::from_bits(*distance),
-                };
-                let most = hits.iter().map(distance).fold(f32::NEG_INFINITY, f32::max);
+                let most = hits.iter().map(distance_of).fold(f32::NEG_INFINITY, f32::max);
                 farthest[i as usize] = farthest[i as usize].max(most);
             }
         }

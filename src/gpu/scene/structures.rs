@@ -34,7 +34,8 @@ impl RenderPlan {
     }
 
     /// Returns the choice to try next if rays need too many steps in the planned structures: a tree instead of a grid,
-    /// or a list instead of a tree; the planned structure instead of tiles. It is `None` for lists, which always stay within the limit.
+    /// or a list instead of a tree; the planned structure instead of tiles. It is `None` for lists, which always stay
+    /// within the limit.
     #[must_use]
     pub fn instead(&self) -> Option<AccelChoice> {
         if self.by_tiles {
