@@ -4,7 +4,7 @@
 // 7 (2019): the discriminant is computed from the foot point (after Hearn and Baker), so that it is not lost in the
 // squared distance, and the roots as q and c/q, so that neither is a difference of nearly equal numbers. Changes: the
 // direction must have unit length, and only the relevant root is computed. A tangent ray hits.
-// provides: Shape, intersect, is_same, no_shape, shape_normal, sphere_normal
+// provides: Shape, discriminant_of, intersect, is_same, no_shape, shape_normal, sphere_normal
 // needs: NO_HIT, Ray, fence, fence3
 
 // A sphere: its centre in the scene's frame, and its radius.
@@ -24,6 +24,14 @@ struct SphereHit {
     // Signed distance from the centre's foot point on the ray to the hit point.
     from_foot: f32,
     foot_to_center: vec3f,
+}
+
+// Not negative if the ray's line meets the sphere, with the operations and the fences of `intersect`.
+fn discriminant_of(ray: Ray, sphere: Shape) -> f32 {
+    let to_center = fence3(sphere.xyz - ray.origin);
+    let b = fence(dot(to_center, ray.direction));
+    let foot_to_center = fence3(to_center - b * ray.direction);
+    return fence(sphere.w * sphere.w - dot(foot_to_center, foot_to_center));
 }
 
 // Intersects a ray with a sphere, without branches, because software devices execute both sides of a branch.

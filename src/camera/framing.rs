@@ -30,6 +30,8 @@ fn window(subject: &Subject<'_>, margin: f64) -> [DVec2; 2] {
 /// distance of the eye e.
 pub(super) fn perspective_eye(subject: &Subject<'_>, basis: &OrthonormalBasis, tangents: DVec2, margin: f64) -> DVec3 {
     let [middle, half] = window(subject, margin).map(|location| location * tangents);
+    let outer = subject.outer_spheres();
+    let subject = &subject.with_spheres(&outer);
     let across = Wedge::new(subject, basis.u(), basis.w(), middle.x, half.x);
     let along = Wedge::new(subject, basis.v(), basis.w(), middle.y, half.y);
     let back = across.back.max(along.back);

@@ -93,6 +93,43 @@ impl<'a> Subject<'a> {
         self.spheres.is_empty()
     }
 
+    /// The spheres that may reach farthest in some direction, with some others. [`Subject::supports`] returns the same for
+    /// them, and takes less time.
+    ///
+    /// For each of the eight diagonal directions there is a centre that lies farthest in it. A box whose corners are no
+    /// farther out along any axis than the centre of their own diagonal is within the hull of the eight centres: for every
+    /// direction n, the centre of the diagonal with the signs of n reaches as far as the box. So spheres in that box never
+    /// reach farthest.
+    pub(crate) fn outer_spheres(&self) -> Vec<[f32; 4]> {
+        let signs: [[f32; 3]; 8] = std::array::from_fn(|k| [0, 1, 2].map(|i| if k >> i & 1 == 1 { 1.0 } else { -1.0 }));
+        let along = |[a, b, c]: [f32; 3], [x, y, z, _]: [f32; 4]| a * x + b * y + c * z;
+        let farther = |centers: [[f32; 4]; 8], others: [[f32; 4]; 8]| -> [[f32; 4]; 8] {
+            let of = |k: usize| [centers[k], others[k]];
+            std::array::from_fn(|k| of(k)[usize::from(along(signs[k], of(k)[1]) > along(signs[k], of(k)[0]))])
+        };
+        let of_chunk = |_, chunk: &[[f32; 4]]| chunk.iter().map(|sphere| [*sphere; 8]).reduce(farther);
+        let centers = parallel::map_chunks(self.spheres, of_chunk).into_iter().flatten().reduce(farther);
+        let Some(centers) = centers else { return Vec::new() };
+        let end = |axis: usize, sign: f32| {
+            let outer = centers.iter().zip(signs).filter(|(_, signs)| signs[axis] * sign > 0.0);
+            sign * outer.map(|(center, _)| sign * center[axis]).fold(f32::INFINITY, f32::min)
+        };
+        let box_of = [0, 1, 2].map(|axis| [end(axis, -1.0), end(axis, 1.0)].map(f64::from));
+        // Supports are rounded, so that a sphere at the side of the box could reach farther by the last bit.
+        let slack = 1e-9 * box_of.iter().flatten().fold(0.0, |most: f64, end| most.max(end.abs()));
+        let is_outer = |sphere: &&[f32; 4]| {
+            let [x, y, z, radius] = sphere.map(f64::from);
+            [x, y, z].iter().zip(&box_of).any(|(x, [low, high])| x - radius < low + slack || x + radius > high - slack)
+        };
+        let outer = |_, chunk: &[[f32; 4]]| chunk.iter().filter(is_outer).copied().collect::<Vec<_>>();
+        parallel::map_chunks(self.spheres, outer).concat()
+    }
+
+    /// The subject with other spheres.
+    pub(crate) fn with_spheres<'b>(&self, spheres: &'b [[f32; 4]]) -> Subject<'b> {
+        Subject { spheres, ..*self }
+    }
+
     /// The reach of the subject along each direction, measured from the middle of its box. It is the largest n·p of all
     /// its points p. The directions need not have unit length.
     ///
@@ -143,5 +180,32 @@ impl<'a> Subject<'a> {
         let of_chunk = |_, chunk: &[[f32; 4]]| chunk.iter().map(|s| f64::from(s[3])).sum::<f64>();
         let sum: f64 = parallel::map_chunks(self.of_data(), of_chunk).into_iter().sum();
         (!self.spheres.is_empty()).then(|| sum / self.of_data().len() as f64)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// Not all spheres of a ball or a block are left, which reach as far in every direction. So do those of a scene without
+    /// an inside.
+    #[test]
+    fn outer_spheres_reach_as_far_as_all() {
+        let mut rng = fastrand::Rng::with_seed(2);
+        for (shape, most) in [(0, 0.9), (1, 0.5), (2, 1.0)] {
+            let mut number = || 2.0 * rng.f32() - 1.0;
+            let spheres: Vec<[f32; 4]> = (0..3_000)
+                .map(|_| [number(), number(), number(), 0.05 * number().abs()])
+                .map(|[x, y, z, r]| [x, y, if shape == 2 { 0.0 } else { z }, r])
+                .filter(|[x, y, z, _]| shape > 0 || x * x + y * y + z * z < 1.0)
+                .collect();
+            let subject = Subject::spheres(DVec3::X, &spheres, Bounds::between(DVec3::NEG_ONE, DVec3::ONE));
+            let outer = subject.outer_spheres();
+            assert!(!outer.is_empty() && outer.len() as f32 <= most * spheres.len() as f32, "{shape}: {}", outer.len());
+            for _ in 0..300 {
+                let direction = DVec3::new(number().into(), number().into(), number().into());
+                assert_eq!(subject.with_spheres(&outer).supports([direction]), subject.supports([direction]));
+            }
+        }
     }
 }

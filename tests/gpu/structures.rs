@@ -10,7 +10,7 @@ use std::sync::LazyLock;
 use fastrand::Rng;
 use libtest_mimic::Trial;
 use pinhole::accel::{Accel, AccelChoice, AccelPlan, Brick, Structure};
-use pinhole::camera::{Camera, OrthographicCamera, PinholeCamera, Pose};
+use pinhole::camera::{Camera, FisheyeCamera, OrthographicCamera, PinholeCamera, Pose};
 use pinhole::gpu::{
     ColorTarget, Decision, GpuError, Headless, HeadlessOptions, LimitChoice, PictureRequest, RendererOptions,
     SceneBuffers, Wait, wgpu,
@@ -118,17 +118,24 @@ fn built(scene: &Scene, choice: AccelChoice) -> Accel {
     AccelPlan::new(scene.spheres(), choice, ROOMY).build(scene.spheres())
 }
 
-/// Views from the front, from inside, and of parallel rays along an axis, with films of odd sizes.
-fn views(scene: &Scene) -> [View; 3] {
+/// Views from the front, from inside, of parallel rays along an axis, and of almost all directions from inside, with films
+/// of odd sizes.
+fn views(scene: &Scene) -> [View; 4] {
     let bounds = scene.bounds_to_frame();
     let (center, size) = (bounds.center(), bounds.size().max_element());
     let from_front = PinholeCamera::framing_from_the_front(bounds, 1.5).unwrap();
-    let pose = Pose::looking_along(center, [0.3, -0.4, 0.8], [0.0, 1.0, 0.1]).unwrap();
-    let from_within = PinholeCamera::with_vertical_fov(pose, 1.9, 1.0).unwrap();
+    let within = Pose::looking_along(center, [0.3, -0.4, 0.8], [0.0, 1.0, 0.1]).unwrap();
+    let from_within = PinholeCamera::with_vertical_fov(within, 1.9, 1.0).unwrap();
     let eye = center + glam::DVec3::X * size;
     let pose = Pose::looking_along(eye, [-1.0, 0.0, 0.0], [0.0, 1.0, 0.0]).unwrap();
     let parallel = OrthographicCamera::new(pose, [size * 1.1, size * 1.1]).unwrap();
-    [view(scene, from_front, [101, 67]), view(scene, from_within, [45, 83]), view(scene, parallel, [64, 33])]
+    let fisheye = FisheyeCamera::new(within, 5.5, 1.25).unwrap();
+    [
+        view(scene, from_front, [101, 67]),
+        view(scene, from_within, [45, 83]),
+        view(scene, parallel, [64, 33]),
+        view(scene, fisheye, [80, 64]),
+    ]
 }
 
 fn render(headless: &Headless, views: &[View], accel: &Accel) -> Vec<Image> {

@@ -263,7 +263,7 @@ fn in_words(name: &str) -> &'static str {
         "paths" => "the paths of a tile",
         "tables" => "the tables of lights and materials",
         "sky" | "sky shares" => "the image of the sky",
-        "nodes" | "cells" | "references" | "balls" => "the buffer of the structure",
+        "nodes" | "cells" | "references" | "balls" | "lists of tiles" => "the buffer of the structure",
         _ => "a tile of the picture",
     }
 }

@@ -1,13 +1,16 @@
 //! Planning pictures by lists of the spheres that may be seen in each tile: whether one is rendered so, and what it takes.
 
+use std::f64::consts::PI;
+
 use crate::accel::tile_lists::{mean_tiles, most_places};
-use crate::accel::tiles::{SIDE, TileCamera, TileView};
+use crate::accel::tiles::{Projection, SIDE, TileCamera, TileView};
 use crate::accel::{AccelPlan, PlannedBuffer};
 use crate::camera::film::YAxis;
 use crate::camera::{CameraKind, View};
 use crate::gpu::device_shape::DeviceLimits;
 use crate::gpu::passes::bands::rows_per_band;
 use crate::gpu::passes::tiles::{Tile, tile_size};
+use crate::gpu::shader::formats::TEXELS_PER_ROW;
 use crate::gpu::shader::records::{self, SceneSpace};
 use crate::recording::RequestedCamera;
 use crate::scene::Scene;
@@ -24,7 +27,7 @@ const FEW_PLACES: f64 = (1 << 20) as f64;
 /// The camera of a tile of a picture, with the numbers that its kernels have.
 pub(crate) fn tile_view(view: &View<'_>, space: &SceneSpace, margin: f32, tile: Tile) -> Option<TileView> {
     let wide = |v: [f32; 3]| glam::Vec3::from(v).as_dvec3();
-    let records::Camera { origin, advance, right, up, forward, .. } =
+    let records::Camera { origin, advance, right, up, forward, first, second, third } =
         records::Camera::new(&RequestedCamera::of(view.camera), space);
     let film = view.film;
     let down = match film.y_axis() {
@@ -37,7 +40,13 @@ pub(crate) fn tile_view(view: &View<'_>, space: &SceneSpace, margin: f32, tile: 
         right: wide(right),
         down,
         forward: wide(forward),
-        is_parallel: view.camera.kind() == CameraKind::Orthographic,
+        projection: match view.camera.kind() {
+            CameraKind::Orthographic => Projection::Parallel,
+            CameraKind::Fisheye => {
+                Projection::Fisheye([first, second].map(|side| PI * f64::from(third) * f64::from(side)))
+            }
+            _ => Projection::Perspective,
+        },
         film: [film.whole().width(), film.whole().height()],
         first: film.in_whole(tile.origin),
         size: tile.size,
@@ -54,7 +63,7 @@ fn space_of(scene_origin: glam::DVec3, plan: &AccelPlan) -> SceneSpace {
 ///
 /// Only software devices were measured: there, one picture takes less time than building the structure for it.
 pub(crate) fn suits(scene: &Scene, view: &View<'_>, plan: &AccelPlan, device: &DeviceLimits) -> bool {
-    let kinds = [CameraKind::Pinhole, CameraKind::Orthographic, CameraKind::ThinLens];
+    let kinds = [CameraKind::Pinhole, CameraKind::Orthographic, CameraKind::ThinLens, CameraKind::Fisheye];
     if device.device_type != wgpu::DeviceType::Cpu || !kinds.contains(&view.camera.kind()) || scene.len() <= FEW {
         return false;
     }
@@ -76,25 +85,39 @@ pub(crate) fn part_size(view: &View<'_>, device: &DeviceLimits) -> [u32; 2] {
 }
 
 /// The most places in one brick of lists for a part of a picture.
-pub(crate) fn places(spheres: usize, part: [u32; 2]) -> u64 {
+fn places(spheres: usize, part: [u32; 2]) -> u64 {
     // The last sphere of a brick may be in all tiles.
     most_places(spheres) as u64 + tile_count(part)
+}
+
+/// The most spheres in one brick of lists for a part of a picture, and in bricks that are shaded together.
+pub(crate) fn listed(spheres: usize, part: [u32; 2]) -> u64 {
+    places(spheres, part).min(spheres as u64)
 }
 
 fn tile_count(part: [u32; 2]) -> u64 {
     part.iter().map(|side| u64::from(side.div_ceil(SIDE))).product()
 }
 
-/// The buffers of one brick of lists for a part of a picture.
+/// The buffers and textures of one brick of lists for a part of a picture.
 pub(crate) fn buffers(spheres: usize, part: [u32; 2]) -> Vec<PlannedBuffer> {
-    let (places, tiles) = (places(spheres, part), tile_count(part));
-    vec![PlannedBuffer::one("spheres", 16 * places), PlannedBuffer::one("ids", 4 * (2 * places + tiles + 1))]
+    let (listed, tiles) = (listed(spheres, part), tile_count(part));
+    let textures = 4 * places(spheres, part) + 20 * listed + TEXTURE_PADDING;
+    vec![
+        PlannedBuffer::one("spheres", 16 * listed),
+        PlannedBuffer::one("ids", 4 * (listed + tiles + 1)),
+        PlannedBuffer { name: "lists of tiles", bytes: textures + 4 * tiles, bytes_per_binding: 4 * tiles },
+    ]
 }
+
+/// The most bytes that the three textures of lists have in addition to their elements, to fill their last rows.
+const TEXTURE_PADDING: u64 = (4 + 16 + 4) * TEXELS_PER_ROW as u64;
 
 /// The most host memory that making a brick takes, in addition to it.
 pub(crate) fn building_bytes(spheres: usize, part: [u32; 2]) -> u64 {
-    // The spheres of a slab, once more while they are merged; and those that are shaded together.
-    40 * spheres as u64 + 20 * places(spheres, part)
+    // The ids of all spheres, and those that are seen in a slab twice while they are sorted; the spheres that are shaded
+    // together; and the places that threads fill.
+    36 * spheres as u64 + 20 * listed(spheres, part) + 4 * places(spheres, part)
 }
 
 #[cfg(test)]
@@ -103,7 +126,7 @@ mod tests {
 
     use super::*;
     use crate::camera::film::Film;
-    use crate::camera::{Camera, OrthographicCamera, PinholeCamera, Pose, ThinLensCamera};
+    use crate::camera::{Camera, FisheyeCamera, OrthographicCamera, PinholeCamera, Pose, ThinLensCamera};
     use crate::gpu::headless::recording::requested_view;
     use crate::verify::LegalCameraRay;
 
@@ -114,7 +137,7 @@ mod tests {
     fn rays_are_within_the_widening() {
         let mut rng = fastrand::Rng::with_seed(5);
         let mut vector = |size: f64| DVec3::from([(); 3].map(|()| size * (2.0 * rng.f64() - 1.0)));
-        let mut worst: f64 = 0.0;
+        let mut worst = [0.0_f64; 2];
         for number in 0..600 {
             let size = 10_f64.powi(number % 7 - 3);
             let (min, max) = (vector(size).as_vec3(), vector(size).as_vec3());
@@ -125,7 +148,8 @@ mod tests {
             let pinhole = PinholeCamera::new(pose, 1.0, [half, 0.7 * half]).unwrap();
             let lens = ThinLensCamera::new(pinhole, 0.01 * size, 2.0 * size).unwrap();
             let parallel = OrthographicCamera::new(pose, [half * size, half * size]).unwrap();
-            for camera in [&pinhole as &dyn Camera, &lens, &parallel] {
+            let fisheye = FisheyeCamera::new(pose, [0.1, 3.0, 6.0][number as usize / 7 % 3], 1.0).unwrap();
+            for camera in [&pinhole as &dyn Camera, &lens, &parallel, &fisheye] {
                 let (requested, uploaded) = requested_view(&space, camera);
                 let film = Film::new(64, 64).unwrap();
                 let tile = Tile { origin: [0, 0], size: [64, 64], in_target: [0, 0] };
@@ -133,7 +157,8 @@ mod tests {
                 let widening = tile_view(&view, &space, 0.0, tile).unwrap().widening();
                 let farthest =
                     |from: DVec3| space.corners().iter().map(|corner| (*corner - from).length()).fold(0.0, f64::max);
-                for location in [[0.0_f32, 0.0], [1.0, 1.0], [-1.0, 0.9], [0.3, -1.0]] {
+                let reach: f32 = if camera.kind() == CameraKind::Fisheye { 0.7 } else { 1.0 };
+                for location in [[0.0_f32, 0.0], [1.0, 1.0], [-1.0, 0.9], [0.3, -1.0]].map(|at| at.map(|x| reach * x)) {
                     let ray = LegalCameraRay::new(requested.kind, &uploaded, location, [0.5; 2]);
                     let half_width = |of: [crate::verify::Interval; 3]| {
                         DVec3::from(of.map(|interval| 0.5 * (interval.high - interval.low))).length()
@@ -147,6 +172,10 @@ mod tests {
                     let moved = 5.0 * U * (right.length() + up.length());
                     let moved = match requested.kind {
                         CameraKind::Orthographic => moved,
+                        // The vectors are rounded, so that they are not quite of unit length and at right angles.
+                        CameraKind::Fisheye => {
+                            t * (6.0 * U + 5.0 * U * location.length() * PI * f64::from(uploaded.numbers[2]))
+                        }
                         _ => {
                             let toward = right + up + wide(uploaded.forward);
                             moved * (f64::from(uploaded.advance) + t / toward.length())
@@ -155,11 +184,12 @@ mod tests {
                     // The origin is moved to the box, which rounds its coordinates.
                     let entered = 3.0 * U * (start.length() + t);
                     let off = half_width(ray.origin) + half_width(ray.direction) * t + moved + entered;
-                    worst = worst.max(off / widening);
+                    let worst = &mut worst[usize::from(camera.kind() == CameraKind::Fisheye)];
+                    *worst = worst.max(off / widening);
                 }
             }
         }
-        // 60 u of 64 u.
-        assert!(worst < 0.9375 && worst > 0.1, "{worst}");
+        // 60 u of 64 u, and 300 u of 512 u.
+        assert!(worst[0] < 0.9375 && worst[0] > 0.1 && worst[1] < 0.586 && worst[1] > 0.1, "{worst:?}");
     }
 }

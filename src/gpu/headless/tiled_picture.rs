@@ -1,12 +1,11 @@
 //! Rendering one picture of primary rays by lists of the spheres that may be seen in each tile, without a structure.
 
-use crate::accel::tile_lists::{NoBrick, TileBricks};
-use crate::accel::tiles::SIDE;
-use crate::accel::{Brick, BrickBounds, BrickKind, Primitive, Structure};
+use crate::accel::tile_lists::{NoBrick, ONE_SLAB, TileBricks};
+use crate::accel::tiles::TileLists;
+use crate::accel::{Brick, BrickBounds, BrickKind, Index, Primitive, Structure};
 use crate::gpu::checks::scoped;
 use crate::gpu::error::GpuError;
 use crate::gpu::headless::Headless;
-use crate::gpu::headless::one_picture::distance_of;
 use crate::gpu::headless::plan::{PictureRequest, RenderPlan};
 use crate::gpu::headless::primary::begin_pass;
 use crate::gpu::headless::progress::{TracedPixels, UploadProgress, UploadStep, UploadWatch, Watch};
@@ -22,9 +21,7 @@ use crate::gpu::profile::NotedPass;
 use crate::gpu::scene::scene_buffers::SceneBuffers;
 use crate::gpu::scene::scene_summary::{SceneSummary, ShapeIds};
 use crate::gpu::scene::scene_upload::{BrickSpace, SceneUpload, UploadedBricks};
-use crate::gpu::shader::records::Hit;
 use crate::image::{Image, LayerSet};
-use crate::parallel::map;
 
 impl Headless {
     /// Renders a picture by tiles.
@@ -49,7 +46,8 @@ impl Headless {
         let mut image = Image::new(film.width(), film.height(), *layers)?;
         self.alone(async |renderers: &mut Renderers| {
             let layouts = self.layouts_of(vec![kind.structure]).await?;
-            self.begin_renderer(renderers, options_of(false));
+            let has_slabs = scene.len() > ONE_SLAB;
+            self.begin_renderer(renderers, options_of(has_slabs));
             let summary = SceneSummary::of(scene);
             let no_bricks = UploadedBricks { space: brick_space, bricks: Vec::new(), bytes: 0 };
             let mut buffers = SceneBuffers::new_of(no_bricks, summary, ids.exclude_by, self.shape());
@@ -65,11 +63,13 @@ impl Headless {
                 let tiles = tile_view(view, &buffers.space, plan.accel.statistics.margin(), tile);
                 // Another structure is tried.
                 let Some(tiles) = tiles else { return Err(GpuError::Steps) };
+                let phase = self.phase("divide");
                 let mut bricks = TileBricks::new(tiles, scene.spheres());
+                drop(phase);
                 let mut farthest = vec![f32::INFINITY; tiles.count()];
                 let mut upload = SceneUpload::new(&layouts, device, queue, &buffers.summary, brick_space, &ids).await?;
-                let mut frame: Option<(Frame, BandBrick, ReadableBuffer)> = None;
-                let places = tile_plan::places(scene.len(), tile.size) as usize;
+                let mut frame: Option<(Frame, BandBrick)> = None;
+                let most_listed = tile_plan::listed(scene.len(), tile.size) as usize;
                 let mut traced = Traced::default();
                 loop {
                     let number = bricks.made();
@@ -82,9 +82,9 @@ impl Headless {
                         Err(NoBrick::TooMany) => return Err(GpuError::Steps),
                     };
                     drop(phase);
-                    if let (true, Some((frame, part, _))) = (traced.places() + brick.spheres.len() > places, &frame) {
+                    if let (true, Some((frame, part))) = (traced.listed() + brick.spheres.len() > most_listed, &frame) {
                         traced.upload(self, (&layouts, &ids), &mut buffers).await?;
-                        let renderer = renderers.of(device, options_of(number > 1)).await?;
+                        let renderer = renderers.of(device, options_of(has_slabs || number > 1)).await?;
                         let (encoder, noted) = self.shading(renderer, &buffers, frame, part.band)?;
                         self.run_timed(encoder, noted, &[]).await?;
                         traced = traced.after();
@@ -95,16 +95,14 @@ impl Headless {
                     drop(phase);
                     buffers.bricks = upload.take_bricks();
                     traced.add(brick);
-                    let renderer = renderers.of(device, options_of(number > 0)).await?;
+                    let renderer = renderers.of(device, options_of(has_slabs || number > 0)).await?;
                     if frame.is_none() {
                         let mut new = Frame::new(renderer, device, &textures.targets()).await?;
                         new.set_bricks(queue, &buffers, &visible, view, tile, &primary);
                         let Some(part) = new.parts().next() else { break };
-                        let hits = new.traced().0.size();
-                        let hits = scoped(device, || ReadableBuffer::new(device, "pinhole hits read-back", hits));
-                        frame = Some((new, part, hits.await?));
+                        frame = Some((new, part));
                     }
-                    let Some((frame, part, hits)) = &mut frame else { break };
+                    let Some((frame, part)) = &mut frame else { break };
                     let part = BandBrick { is_first_of_band: number == 0, ..*part };
                     let mut left = vec![part.groups];
                     while let Some(groups) = Groups::take(&mut left, buffers.submission_size().groups()) {
@@ -119,15 +117,18 @@ impl Headless {
                     if !bricks.may_go_on() {
                         break;
                     }
+                    let Some(of_tiles) = buffers.bricks.first().and_then(|brick| brick.farthest.as_ref()) else {
+                        break;
+                    };
                     let mut encoder = self.encoder();
-                    hits.record_copy(&mut encoder, frame.traced().0);
-                    self.run(encoder, &[&hits.buffer]).await?;
-                    let region = frame.traced_groups(part.slot);
-                    farthest = hits.read(|hits| farthest_of(hits, tile.size, region))?;
+                    let read_back = ReadableBuffer::new(device, "pinhole tiles read-back", of_tiles.size());
+                    read_back.record_copy(&mut encoder, of_tiles);
+                    self.run(encoder, &[&read_back.buffer]).await?;
+                    farthest = read_back.read(<[f32]>::to_vec)?;
                 }
-                let Some((frame, part, _)) = &frame else { continue };
+                let Some((frame, part)) = &frame else { continue };
                 traced.upload(self, (&layouts, &ids), &mut buffers).await?;
-                let renderer = renderers.of(device, options_of(bricks.made() > 1)).await?;
+                let renderer = renderers.of(device, options_of(has_slabs || bricks.made() > 1)).await?;
                 let (mut encoder, noted) = self.shading(renderer, &buffers, frame, part.band)?;
                 let mapped = textures.record_read_back(&mut encoder, frame, tile.size);
                 self.run_timed(encoder, noted, &mapped).await?;
@@ -151,11 +152,12 @@ struct Traced {
 }
 
 impl Traced {
-    fn places(&self) -> usize {
+    fn listed(&self) -> usize {
         self.all.spheres.len()
     }
 
     fn add(&mut self, brick: Brick) {
+        self.all.index = Index::Tiles(TileLists::default());
         self.all.spheres.extend(brick.spheres);
         self.all.ids.extend(brick.ids);
         self.bricks += 1;
@@ -163,7 +165,7 @@ impl Traced {
 
     /// None of the bricks that come after these.
     fn after(self) -> Self {
-        Self { before: self.before + self.places() as u32, ..Self::default() }
+        Self { before: self.before + self.listed() as u32, ..Self::default() }
     }
 
     /// Copies the bricks as one, unless the one that was traced last is the only one. Indices of shapes count those of
@@ -185,27 +187,4 @@ impl Traced {
         }
         Ok(())
     }
-}
-
-/// The distance of the farthest hit of each tile, row by row, which is infinite if a ray hits nothing. In tiles that are
-/// not traced it is less than all distances.
-fn farthest_of(hits: &[Hit], size: [u32; 2], traced: Groups) -> Vec<f32> {
-    let [columns, rows] = size.map(|side| side.div_ceil(SIDE));
-    let of_row = |row: usize| -> Vec<f32> {
-        let mut farthest = vec![f32::NEG_INFINITY; columns as usize];
-        if !(traced.first[1]..traced.first[1] + traced.size[1]).contains(&(row as u32)) {
-            return farthest;
-        }
-        let side = SIDE as usize;
-        let (width, end) = (size[0] as usize, ((row + 1) * side).min(size[1] as usize));
-        for hits in (row * side..end).map(|j| &hits[j * width..(j + 1) * width]) {
-            let is_traced = |i: &u32| (traced.first[0]..traced.first[0] + traced.size[0]).contains(i);
-            for (i, hits) in (0..).zip(hits.chunks(side)).filter(|(i, _)| is_traced(i)) {
-                let most = hits.iter().map(distance_of).fold(f32::NEG_INFINITY, f32::max);
-                farthest[i as usize] = farthest[i as usize].max(most);
-            }
-        }
-        farthest
-    };
-    map(rows as usize, of_row).concat()
 }

@@ -9,10 +9,11 @@ use crate::accel::{Accel, Brick, BrickBounds, BrickKind, Bricks, Index, Primitiv
 use crate::gpu::checks::scoped;
 use crate::gpu::error::{GpuError, check_storage_size};
 use crate::gpu::passes::renderer::Renderer;
-use crate::gpu::resources::numbered_group;
+use crate::gpu::resources::{Make, list_texture, numbered_group};
 use crate::gpu::scene::appearance::{self, AppearanceWords};
 use crate::gpu::scene::query_structure;
 use crate::gpu::scene::scene_summary::{SceneSummary, ShapeIds};
+use crate::gpu::shader::formats::{LISTED_FORMAT, NEAR_FORMAT, PLACE_FORMAT};
 use crate::gpu::shader::records;
 use crate::scene::SceneAppearance;
 
@@ -34,6 +35,8 @@ pub(crate) struct BrickBuffers {
     /// The appearance words of the spheres.
     pub(crate) appearances: Buffer,
     pub(crate) shape_count: u32,
+    /// The distance of the farthest hit of each tile, if the brick has lists for tiles.
+    pub(crate) farthest: Option<Buffer>,
 }
 
 /// The properties that all bricks of a scene have in common.
@@ -157,13 +160,14 @@ impl<'a> SceneUpload<'a> {
         // Data that share a buffer with the ids, so that a kernel has enough bindings.
         let mut with_ids: Vec<&[u8]> = vec![bytemuck::cast_slice(ids)];
         let mut words: Option<&[u8]> = None;
-        let mut boxes = None;
+        let (mut boxes, mut tiles) = (None, None);
         match &brick.index {
             Index::List => {}
             Index::Tiles(lists) => {
                 record.first_reference = record.shape_count;
-                record.cell_counts = [lists.columns, record.shape_count + lists.starts.len() as u32, 0];
-                with_ids.extend([bytemuck::cast_slice(&lists.starts), bytemuck::cast_slice(&lists.nears)]);
+                record.cell_counts = [lists.columns, 0, 0];
+                with_ids.push(bytemuck::cast_slice(&lists.starts));
+                tiles = Some(lists);
             }
             Index::Grid(grid) => {
                 record.min = grid.min.to_array();
@@ -215,12 +219,28 @@ impl<'a> SceneUpload<'a> {
                 self.work.push(work);
                 query
             });
-            let group = |label, layout, buffers: &[&Buffer], more: Option<BindingResource<'_>>| {
+            let lists = tiles.map(|lists| {
+                let make = Make { device, queue };
+                uploaded.bytes += (4 * lists.places.len() + 20 * brick.spheres.len()) as u64;
+                let textures = [
+                    list_texture(make, "pinhole places", PLACE_FORMAT, &lists.places),
+                    list_texture(make, "pinhole listed spheres", LISTED_FORMAT, &brick.spheres),
+                    list_texture(make, "pinhole near distances", NEAR_FORMAT, &lists.nears),
+                ];
+                let views = textures.map(|texture| texture.create_view(&wgpu::TextureViewDescriptor::default()));
+                let tiles = lists.starts.len().max(2) as u64 - 1;
+                (views, make.buffer("pinhole tiles", 4 * tiles, storage | BufferUsages::COPY_SRC))
+            });
+            let group = |label, layout, buffers: &[&Buffer], more: Vec<BindingResource<'_>>| {
                 let whole = buffers.iter().map(|buffer| buffer.as_entire_binding());
                 numbered_group(device, label, layout, whole.chain(more))
             };
-            let of_structure = words.as_ref().map(Buffer::as_entire_binding);
-            let of_structure = of_structure.or(query.as_ref().map(wgpu::Tlas::as_binding));
+            let of_structure = words.iter().map(Buffer::as_entire_binding);
+            let of_structure = of_structure.chain(query.iter().map(wgpu::Tlas::as_binding));
+            let of_tiles = lists.iter().flat_map(|(views, farthest)| {
+                views.iter().map(BindingResource::TextureView).chain([farthest.as_entire_binding()])
+            });
+            let of_structure = of_structure.chain(of_tiles).collect();
             let traced = [&record, &shapes, &ids];
             let shaded = [&record, &shapes, &appearances, palette];
             let surface_layout = layouts.surface_of(kind.primitive);
@@ -229,11 +249,12 @@ impl<'a> SceneUpload<'a> {
                 kind,
                 bounds: BrickBounds::of_spheres(&brick.spheres),
                 trace_group: group("pinhole brick", trace_layout, &traced, of_structure),
-                surface_group: group("pinhole surface", surface_layout, &shaded, None),
-                appearance_group: group("pinhole appearance", &layouts.appearance, &seen, None),
+                surface_group: group("pinhole surface", surface_layout, &shaded, vec![]),
+                appearance_group: group("pinhole appearance", &layouts.appearance, &seen, vec![]),
                 ids,
                 appearances,
                 shape_count,
+                farthest: lists.map(|(_, farthest)| farthest),
             }
         });
         let buffers = buffers.await?;

@@ -7,7 +7,7 @@ use wgpu::{BindGroupLayout, BindGroupLayoutEntry, BindingType, Device};
 use crate::accel::{BrickKind, Primitive, Structure};
 use crate::gpu::error::GpuError;
 use crate::gpu::passes::renderer_options::RendererOptions;
-use crate::gpu::shader::formats::{DEPTH_FORMAT, ID_FORMAT, NORMAL_FORMAT};
+use crate::gpu::shader::formats::{DEPTH_FORMAT, ID_FORMAT, LISTED_FORMAT, NEAR_FORMAT, NORMAL_FORMAT, PLACE_FORMAT};
 use crate::gpu::shader::records;
 
 /// The layouts of all bind groups of the kernels for primary rays.
@@ -46,7 +46,7 @@ impl Layouts {
             brick: BrickKind::of(structures, primitives)
                 .map(|kind| {
                     let mut kinds = vec![uniform::<records::Brick>(), shapes(kind.primitive), storage::<u32>(true)];
-                    kinds.extend(word_buffers(kind.structure));
+                    kinds.extend(of_structure(kind.structure));
                     (kind, layout("pinhole brick", &kinds))
                 })
                 .collect(),
@@ -109,10 +109,14 @@ pub(crate) fn layout_of(device: &Device, label: &str, kinds: &[(u32, BindingType
     device.create_bind_group_layout(&wgpu::BindGroupLayoutDescriptor { label: Some(label), entries: &entries })
 }
 
-/// Binding types of the buffers of a structure besides its shapes and ids, from binding 3 on.
-fn word_buffers(structure: Structure) -> Vec<BindingType> {
+/// Binding types of the data of a structure besides its shapes and ids, from binding 3 on.
+fn of_structure(structure: Structure) -> Vec<BindingType> {
     match structure {
-        Structure::List | Structure::Tiles => vec![],
+        Structure::List => vec![],
+        Structure::Tiles => {
+            let textures = [PLACE_FORMAT, LISTED_FORMAT, NEAR_FORMAT].map(read_texture);
+            textures.into_iter().chain([storage::<u32>(false)]).collect()
+        }
         Structure::RayQuery => vec![BindingType::AccelerationStructure { vertex_return: false }],
         Structure::WideTree | Structure::Grid | Structure::NestedGrid => {
             vec![storage::<[u32; 4]>(true)]
@@ -139,9 +143,13 @@ pub(crate) fn storage<Element>(read_only: bool) -> BindingType {
 }
 
 fn target(format: wgpu::TextureFormat) -> BindingType {
-    BindingType::StorageTexture {
-        access: wgpu::StorageTextureAccess::WriteOnly,
-        format,
-        view_dimension: wgpu::TextureViewDimension::D2,
-    }
+    storage_texture(format, wgpu::StorageTextureAccess::WriteOnly)
+}
+
+fn read_texture(format: wgpu::TextureFormat) -> BindingType {
+    storage_texture(format, wgpu::StorageTextureAccess::ReadOnly)
+}
+
+fn storage_texture(format: wgpu::TextureFormat, access: wgpu::StorageTextureAccess) -> BindingType {
+    BindingType::StorageTexture { access, format, view_dimension: wgpu::TextureViewDimension::D2 }
 }
