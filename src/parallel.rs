@@ -54,7 +54,7 @@ fn extended<R: Send>(mut list: Vec<R>, count: usize, chunk: usize, f: impl Fn(us
 }
 
 /// The results of `f` for every chunk and the index of its first item, in order.
-pub fn map_chunks<T: Sync, R: Send>(items: &[T], f: impl Fn(usize, &[T]) -> R + Sync) -> Vec<R> {
+pub fn map_chunks<'a, T: Sync, R: Send>(items: &'a [T], f: impl Fn(usize, &'a [T]) -> R + Sync) -> Vec<R> {
     map_parts(ranges(items.len(), CHUNK), |range| f(range.start, &items[range]))
 }
 

@@ -103,16 +103,21 @@ impl<'a> Subject<'a> {
     pub(crate) fn outer_spheres(&self) -> Vec<[f32; 4]> {
         let signs: [[f32; 3]; 8] = std::array::from_fn(|k| [0, 1, 2].map(|i| if k >> i & 1 == 1 { 1.0 } else { -1.0 }));
         let along = |[a, b, c]: [f32; 3], [x, y, z, _]: [f32; 4]| a * x + b * y + c * z;
-        let farther = |centers: [[f32; 4]; 8], others: [[f32; 4]; 8]| -> [[f32; 4]; 8] {
-            let of = |k: usize| [centers[k], others[k]];
-            std::array::from_fn(|k| of(k)[usize::from(along(signs[k], of(k)[1]) > along(signs[k], of(k)[0]))])
+        let most_of = |_, chunk: &'a [[f32; 4]]| {
+            let farther = |most: [f32; 8], sphere: &[f32; 4]| -> [f32; 8] {
+                std::array::from_fn(|k| most[k].max(along(signs[k], *sphere)))
+            };
+            (chunk, chunk.iter().fold([f32::NEG_INFINITY; 8], farther))
         };
-        let of_chunk = |_, chunk: &[[f32; 4]]| chunk.iter().map(|sphere| [*sphere; 8]).reduce(farther);
-        let centers = parallel::map_chunks(self.spheres, of_chunk).into_iter().flatten().reduce(farther);
-        let Some(centers) = centers else { return Vec::new() };
-        let end = |axis: usize, sign: f32| {
-            let outer = centers.iter().zip(signs).filter(|(_, signs)| signs[axis] * sign > 0.0);
-            sign * outer.map(|(center, _)| sign * center[axis]).fold(f32::INFINITY, f32::min)
+        let chunks = parallel::map_chunks(self.spheres, most_of);
+        let farthest: [[f32; 4]; 8] = std::array::from_fn(|k| {
+            let (chunk, _) = chunks.iter().max_by(|(_, a), (_, b)| a[k].total_cmp(&b[k])).copied().unwrap_or_default();
+            let order = |a: &&[f32; 4], b: &&[f32; 4]| along(signs[k], **a).total_cmp(&along(signs[k], **b));
+            chunk.iter().max_by(order).copied().unwrap_or_default()
+        });
+        let end = |axis: usize, side: f32| {
+            let centers = farthest.iter().zip(signs).filter(|(_, signs)| signs[axis] * side > 0.0);
+            side * centers.map(|(center, _)| side * center[axis]).fold(f32::INFINITY, f32::min)
         };
         let box_of = [0, 1, 2].map(|axis| [end(axis, -1.0), end(axis, 1.0)].map(f64::from));
         // Supports are rounded, so that a sphere at the side of the box could reach farther by the last bit.

@@ -221,10 +221,12 @@ impl<'a> SceneUpload<'a> {
             });
             let lists = tiles.map(|lists| {
                 let make = Make { device, queue };
-                uploaded.bytes += (4 * lists.places.len() + 20 * brick.spheres.len()) as u64;
+                // Bricks that are only shaded have no lists.
+                let listed = &brick.spheres[..lists.nears.len()];
+                uploaded.bytes += (4 * lists.places.len() + 20 * listed.len()) as u64;
                 let textures = [
                     list_texture(make, "pinhole places", PLACE_FORMAT, &lists.places),
-                    list_texture(make, "pinhole listed spheres", LISTED_FORMAT, &brick.spheres),
+                    list_texture(make, "pinhole listed spheres", LISTED_FORMAT, listed),
                     list_texture(make, "pinhole near distances", NEAR_FORMAT, &lists.nears),
                 ];
                 let views = textures.map(|texture| texture.create_view(&wgpu::TextureViewDescriptor::default()));
@@ -247,7 +249,11 @@ impl<'a> SceneUpload<'a> {
             let seen = [&appearances, palette];
             BrickBuffers {
                 kind,
-                bounds: BrickBounds::of_spheres(&brick.spheres),
+                bounds: match tiles {
+                    // All spheres of a picture are seen in it.
+                    Some(_) => BrickBounds::of_box(uploaded.space.bounds),
+                    None => BrickBounds::of_spheres(&brick.spheres),
+                },
                 trace_group: group("pinhole brick", trace_layout, &traced, of_structure),
                 surface_group: group("pinhole surface", surface_layout, &shaded, vec![]),
                 appearance_group: group("pinhole appearance", &layouts.appearance, &seen, vec![]),
