@@ -1,23 +1,12 @@
 // The lists of the spheres that may be seen in each tile of a picture, the nearest first. Twin: src/accel/tile_lists.rs.
 // provides: farthest, find_in_tile
-// needs: Entry, Nearest, brick, discriminant_of, ids, intersect, offer, spend
+// needs: Entry, Nearest, Shape, brick, discriminant_of, ids, intersect, offer, shapes, spend
 
-// The index of the sphere of each place in the lists. A software device reads textures in less than half of the time
-// that buffers take. Element i is at (i % 4096, i / 4096).
-@group(1) @binding(3) var places: texture_storage_2d<r32uint, read>;
-// The spheres of the brick.
-@group(1) @binding(4) var listed: texture_storage_2d<rgba32float, read>;
-// A lower bound of the distance of each sphere's hits from the camera, in ascending order.
-@group(1) @binding(5) var nears: texture_storage_2d<r32float, read>;
 // For each tile the bits of the distance of the farthest hit, from which the host finds the tiles that are done.
-@group(1) @binding(6) var<storage, read_write> farthest: array<atomic<u32>>;
-
-fn texel(index: u32) -> vec2u {
-    return vec2u(index & 4095u, index >> 12u);
-}
+@group(1) @binding(3) var<storage, read_write> farthest: array<atomic<u32>>;
 
 // The nearest hit of a ray after a sphere is offered.
-fn offered(entry: Entry, sphere: vec4f, index: u32, before: Nearest) -> Nearest {
+fn offered(entry: Entry, sphere: Shape, index: u32, before: Nearest) -> Nearest {
     var nearest = before;
     offer(&nearest, intersect(entry.ray, sphere).t, index);
     return nearest;
@@ -30,21 +19,22 @@ fn find_in_tile(tile: u32, entries: array<Entry, 4>, before: array<Nearest, 4>) 
     var b = before[1];
     var c = before[2];
     var d = before[3];
-    // The starts of the lists follow the ids.
+    // The starts of the lists follow the ids. Then come the index of the sphere of each place in the lists, and a lower
+    // bound of the distance of each sphere's hits from the camera.
     let end = ids[brick.first_reference + tile + 1u];
     var at = ids[brick.first_reference + tile];
     loop {
         if (at == end || !spend(1u)) {
             break;
         }
-        let index = textureLoad(places, texel(at)).x;
+        let index = ids[brick.cell_counts.y + at];
         let reach = max(
             max(entries[0].distance + a.t, entries[1].distance + b.t),
             max(entries[2].distance + c.t, entries[3].distance + d.t));
-        if (textureLoad(nears, texel(index)).x > reach) {
+        if (bitcast<f32>(ids[brick.cell_counts.z + index]) > reach) {
             break;
         }
-        let sphere = textureLoad(listed, texel(index));
+        let sphere = shapes[index];
         // Most spheres of a list are hit by none of the four rays.
         let most = max(
             max(discriminant_of(entries[0].ray, sphere), discriminant_of(entries[1].ray, sphere)),

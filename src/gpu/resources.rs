@@ -7,8 +7,6 @@ use wgpu::{
     TextureUsages,
 };
 
-use crate::gpu::shader::formats::TEXELS_PER_ROW;
-
 /// Creates buffers on a device, and queues their contents.
 #[derive(Clone, Copy)]
 pub(crate) struct Make<'a> {
@@ -69,30 +67,6 @@ pub(crate) fn texture(
         usage,
         view_formats: &[],
     })
-}
-
-/// A texture with the elements of a list, row by row, and zeros to the end of the last row. There is at least one row.
-pub(crate) fn list_texture<T: bytemuck::NoUninit>(
-    make: Make<'_>,
-    label: &'static str,
-    format: TextureFormat,
-    list: &[T],
-) -> Texture {
-    let rows = list.len().div_ceil(TEXELS_PER_ROW).max(1);
-    let usage = TextureUsages::STORAGE_BINDING | TextureUsages::COPY_DST;
-    let texture = texture(make.device, label, format, [TEXELS_PER_ROW as u32, rows as u32], usage);
-    let (whole, rest) = list.split_at(list.len() / TEXELS_PER_ROW * TEXELS_PER_ROW);
-    let bytes_per_row = (TEXELS_PER_ROW * size_of::<T>()) as u32;
-    for (y, list) in [(0, whole), (rows as u32 - 1, rest)].into_iter().filter(|(_, list)| !list.is_empty()) {
-        let mut target = texture.as_image_copy();
-        target.origin.y = y;
-        let width = list.len().min(TEXELS_PER_ROW);
-        let size = extent([width, list.len() / width].map(|side| side as u32));
-        let layout =
-            wgpu::TexelCopyBufferLayout { offset: 0, bytes_per_row: Some(bytes_per_row), rows_per_image: None };
-        make.queue.write_texture(target, bytemuck::cast_slice(list), layout, size);
-    }
-    texture
 }
 
 pub(crate) fn extent([width, height]: [u32; 2]) -> wgpu::Extent3d {

@@ -6,7 +6,7 @@ use crate::camera::View;
 use crate::gpu::device_shape::DeviceLimits;
 use crate::gpu::headless::Headless;
 use crate::gpu::headless::plan::{PictureRequest, RenderPlan, StructurePlans};
-use crate::gpu::scene::scene_buffers::binding_limit;
+use crate::gpu::scene::scene_buffers::search_limit;
 use crate::image::LayerSet;
 use crate::render::RenderSettings;
 use crate::scene::Scene;
@@ -57,7 +57,7 @@ impl Headless {
     /// Plans the structure of a scene for this device.
     #[must_use]
     pub fn plan_accel(&self, scene: &Scene, choice: AccelChoice) -> AccelPlan {
-        let binding = binding_limit(&self.device().limits());
+        let binding = search_limit(self.device());
         let planned = |choice| AccelPlan::new(scene.spheres(), choice, binding);
         let mut plan = planned(choice);
         // Grids are traversed in loops that invocations leave at different times. Trees are not.

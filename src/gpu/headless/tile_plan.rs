@@ -10,7 +10,6 @@ use crate::camera::{CameraKind, View};
 use crate::gpu::device_shape::DeviceLimits;
 use crate::gpu::passes::bands::rows_per_band;
 use crate::gpu::passes::tiles::{Tile, tile_size};
-use crate::gpu::shader::formats::TEXELS_PER_ROW;
 use crate::gpu::shader::records::{self, SceneSpace};
 use crate::recording::RequestedCamera;
 use crate::scene::Scene;
@@ -99,19 +98,15 @@ fn tile_count(part: [u32; 2]) -> u64 {
     part.iter().map(|side| u64::from(side.div_ceil(SIDE))).product()
 }
 
-/// The buffers and textures of one brick of lists for a part of a picture.
+/// The buffers of one brick of lists for a part of a picture.
 pub(crate) fn buffers(spheres: usize, part: [u32; 2]) -> Vec<PlannedBuffer> {
     let (listed, tiles) = (listed(spheres, part), tile_count(part));
-    let textures = 4 * places(spheres, part) + 20 * listed + TEXTURE_PADDING;
     vec![
         PlannedBuffer::one("spheres", 16 * listed),
-        PlannedBuffer::one("ids", 4 * (listed + tiles + 1)),
-        PlannedBuffer { name: "lists of tiles", bytes: textures + 4 * tiles, bytes_per_binding: 4 * tiles },
+        PlannedBuffer::one("ids", 4 * (2 * listed + places(spheres, part) + tiles + 1)),
+        PlannedBuffer::one("tiles", 4 * tiles),
     ]
 }
-
-/// The most bytes that the three textures of lists have in addition to their elements, to fill their last rows.
-const TEXTURE_PADDING: u64 = (4 + 16 + 4) * TEXELS_PER_ROW as u64;
 
 /// The most host memory that making a brick takes, in addition to it.
 pub(crate) fn building_bytes(spheres: usize, part: [u32; 2]) -> u64 {

@@ -12,6 +12,7 @@ use crate::gpu::scene::scene_buffers::{SceneBuffers, binding_limit};
 use crate::gpu::scene::scene_summary::SceneSummary;
 use crate::gpu::scene::scene_upload::BrickBuffers;
 use crate::gpu::shader::layouts::{layout, storage, uniform};
+use crate::gpu::shader::textures::Searched;
 use crate::gpu::shader::{Kernel, pipeline};
 use crate::scene::material::{Material, SurfaceProperties};
 use crate::scene::{Colors, Scene, SceneUpdate};
@@ -47,7 +48,7 @@ impl Recolor {
     /// If the device rejects the kernel, which is a defect of this crate or of the driver.
     pub async fn new(device: &Device) -> Result<Self, GpuError> {
         let [read, written] = [true, false].map(storage::<u32>);
-        let kinds = [uniform::<RecolorRange>(), read, read, written];
+        let kinds = [uniform::<RecolorRange>(), read, Searched::Ids.binding_type(device), written];
         let checks = Checks::default();
         let layout = checks.create(device, || layout(device, "pinhole recolor", &kinds));
         let pipeline = pipeline(device, &recolor_kernel(), &[&layout], &checks);
@@ -120,7 +121,8 @@ impl Recolor {
             let (count, shape_count) = (words.len() as u32, *shape_count);
             let record = RecolorRange { first, count, shape_count, zero: 0 };
             let range = make.filled(label, bytemuck::bytes_of(&record), BufferUsages::UNIFORM);
-            let bound = [&range, &new_words, ids, appearances].map(Buffer::as_entire_binding);
+            let [range, new_words, appearances] = [&range, &new_words, appearances].map(Buffer::as_entire_binding);
+            let bound = [range, new_words, ids.binding(), appearances];
             let group = numbered_group(make.device, label, &self.layout, bound);
             noted.note("recolor");
             let mut pass =

@@ -15,6 +15,7 @@ use crate::gpu::passes::tiles::Groups;
 use crate::gpu::scene::scene_summary::{ExcludeBy, SceneSummary, ShapeIds};
 use crate::gpu::scene::scene_upload::{BrickBuffers, BrickSource, BrickSpace, SceneUpload, UploadedBricks};
 use crate::gpu::shader::records::SceneSpace;
+use crate::gpu::shader::textures::{TEXELS_PER_ROW, reads_textures};
 use crate::render::{PrimarySettings, RenderSettings};
 use crate::scene::{Scene, SceneAppearance};
 
@@ -273,7 +274,15 @@ pub(crate) fn binding_limit(limits: &wgpu::Limits) -> u64 {
     limits.max_storage_buffer_binding_size.min(limits.max_buffer_size)
 }
 
+/// Maximum size in bytes of the data of a brick that kernels search on a device: of a binding, or of a texture of numbers.
+pub(crate) fn search_limit(device: &Device) -> u64 {
+    let limits = device.limits();
+    let binding = binding_limit(&limits);
+    let texture = 4 * TEXELS_PER_ROW as u64 * u64::from(limits.max_texture_dimension_2d);
+    if reads_textures(device) { binding.min(texture) } else { binding }
+}
+
 /// Plans the structure of a scene for a device.
 fn plan_of(device: &Device, scene: &Scene) -> AccelPlan {
-    AccelPlan::new(scene.spheres(), AccelChoice::Auto, binding_limit(&device.limits()))
+    AccelPlan::new(scene.spheres(), AccelChoice::Auto, search_limit(device))
 }

@@ -3,18 +3,21 @@
 use std::sync::Arc;
 
 use glam::Vec3;
-use wgpu::{BindGroup, BindingResource, Buffer, BufferUsages, CommandEncoder, Device, Queue};
+use wgpu::{
+    BindGroup, BindingResource, Buffer, BufferUsages, CommandEncoder, Device, Queue, TextureFormat, TextureUsages,
+    TextureView,
+};
 
 use crate::accel::{Accel, Brick, BrickBounds, BrickKind, Bricks, Index, Primitive, Structure};
 use crate::gpu::checks::scoped;
 use crate::gpu::error::{GpuError, check_storage_size};
 use crate::gpu::passes::renderer::Renderer;
-use crate::gpu::resources::{Make, list_texture, numbered_group};
+use crate::gpu::resources::{Make, extent, numbered_group, texture};
 use crate::gpu::scene::appearance::{self, AppearanceWords};
 use crate::gpu::scene::query_structure;
 use crate::gpu::scene::scene_summary::{SceneSummary, ShapeIds};
-use crate::gpu::shader::formats::{LISTED_FORMAT, NEAR_FORMAT, PLACE_FORMAT};
 use crate::gpu::shader::records;
+use crate::gpu::shader::textures::{Searched, TEXELS_PER_ROW, reads_textures};
 use crate::scene::SceneAppearance;
 
 /// Buffers and bind groups of a brick.
@@ -31,12 +34,28 @@ pub(crate) struct BrickBuffers {
     /// Bind group 3 of kernels that search the brick and shade its shapes.
     pub(crate) appearance_group: BindGroup,
     /// The id of every sphere, in the order of the structure. Some structures append words.
-    pub(crate) ids: Buffer,
+    pub(crate) ids: SearchedData,
     /// The appearance words of the spheres.
     pub(crate) appearances: Buffer,
     pub(crate) shape_count: u32,
     /// The distance of the farthest hit of each tile, if the brick has lists for tiles.
     pub(crate) farthest: Option<Buffer>,
+}
+
+/// Data of a brick that kernels search.
+#[derive(Debug)]
+pub(crate) enum SearchedData {
+    Buffer(Buffer),
+    Texture(TextureView),
+}
+
+impl SearchedData {
+    pub(crate) fn binding(&self) -> BindingResource<'_> {
+        match self {
+            Self::Buffer(buffer) => buffer.as_entire_binding(),
+            Self::Texture(view) => BindingResource::TextureView(view),
+        }
+    }
 }
 
 /// The properties that all bricks of a scene have in common.
@@ -165,8 +184,10 @@ impl<'a> SceneUpload<'a> {
             Index::List => {}
             Index::Tiles(lists) => {
                 record.first_reference = record.shape_count;
-                record.cell_counts = [lists.columns, 0, 0];
-                with_ids.push(bytemuck::cast_slice(&lists.starts));
+                let first_place = record.shape_count + lists.starts.len() as u32;
+                record.cell_counts = [lists.columns, first_place, first_place + lists.places.len() as u32];
+                with_ids.extend([&lists.starts, &lists.places].map(|of| bytemuck::cast_slice(of)));
+                with_ids.push(bytemuck::cast_slice(&lists.nears));
                 tiles = Some(lists);
             }
             Index::Grid(grid) => {
@@ -209,42 +230,42 @@ impl<'a> SceneUpload<'a> {
             let uniform = BufferUsages::UNIFORM;
             let shape_count = record.shape_count;
             let record = filled("pinhole brick", uniform, &[bytemuck::bytes_of(&record)]);
-            let shapes = filled("pinhole shapes", storage, &[shapes]);
-            let ids = filled("pinhole ids", storage, &with_ids);
             let appearances = filled("pinhole appearances", storage, &[appearances]);
-            let words = words.map(|words| filled("pinhole structure", storage, &[words]));
+            let in_buffer = filled("pinhole shapes", storage, &[shapes]);
+            // Bricks of tiles that are only shaded have no lists.
+            let is_searched = tiles.is_none_or(|lists| !lists.nears.is_empty());
+            let shapes = if is_searched { shapes } else { &no_shape[..] };
+            let mut searched = |label, searched: Searched, slices: &[&[u8]]| match reads_textures(device) {
+                true => {
+                    uploaded.bytes += slices.iter().map(|slice| slice.len() as u64).sum::<u64>();
+                    SearchedData::Texture(list_texture(Make { device, queue }, label, searched.format(), slices))
+                }
+                false => SearchedData::Buffer(joined((device, queue), &mut uploaded.bytes, label, storage, slices)),
+            };
+            let shapes = match reads_textures(device) {
+                true => searched("pinhole searched shapes", Searched::Shapes, &[shapes]),
+                false => SearchedData::Buffer(in_buffer.clone()),
+            };
+            let ids = searched("pinhole ids", Searched::Ids, &with_ids);
+            let words = words.map(|words| searched("pinhole structure", Searched::Words, &[words]));
             let query = boxes.map(|boxes| {
                 let (query, work) = query_structure::begin(device, boxes);
                 uploaded.bytes += size_of_val(boxes) as u64;
                 self.work.push(work);
                 query
             });
-            let lists = tiles.map(|lists| {
-                let make = Make { device, queue };
-                // Bricks that are only shaded have no lists.
-                let listed = &brick.spheres[..lists.nears.len()];
-                uploaded.bytes += (4 * lists.places.len() + 20 * listed.len()) as u64;
-                let textures = [
-                    list_texture(make, "pinhole places", PLACE_FORMAT, &lists.places),
-                    list_texture(make, "pinhole listed spheres", LISTED_FORMAT, listed),
-                    list_texture(make, "pinhole near distances", NEAR_FORMAT, &lists.nears),
-                ];
-                let views = textures.map(|texture| texture.create_view(&wgpu::TextureViewDescriptor::default()));
+            let farthest = tiles.map(|lists| {
                 let tiles = lists.starts.len().max(2) as u64 - 1;
-                (views, make.buffer("pinhole tiles", 4 * tiles, storage | BufferUsages::COPY_SRC))
+                Make { device, queue }.buffer("pinhole tiles", 4 * tiles, storage | BufferUsages::COPY_SRC)
             });
-            let group = |label, layout, buffers: &[&Buffer], more: Vec<BindingResource<'_>>| {
-                let whole = buffers.iter().map(|buffer| buffer.as_entire_binding());
-                numbered_group(device, label, layout, whole.chain(more))
+            let of_structure = words.as_ref().map(SearchedData::binding);
+            let of_structure = of_structure.or(query.as_ref().map(wgpu::Tlas::as_binding));
+            let of_structure = of_structure.or(farthest.as_ref().map(Buffer::as_entire_binding));
+            let traced = [record.as_entire_binding(), shapes.binding(), ids.binding()].into_iter().chain(of_structure);
+            let group = |label, layout, buffers: &[&Buffer]| {
+                numbered_group(device, label, layout, buffers.iter().map(|buffer| buffer.as_entire_binding()))
             };
-            let of_structure = words.iter().map(Buffer::as_entire_binding);
-            let of_structure = of_structure.chain(query.iter().map(wgpu::Tlas::as_binding));
-            let of_tiles = lists.iter().flat_map(|(views, farthest)| {
-                views.iter().map(BindingResource::TextureView).chain([farthest.as_entire_binding()])
-            });
-            let of_structure = of_structure.chain(of_tiles).collect();
-            let traced = [&record, &shapes, &ids];
-            let shaded = [&record, &shapes, &appearances, palette];
+            let shaded = [&record, &in_buffer, &appearances, palette];
             let surface_layout = layouts.surface_of(kind.primitive);
             let seen = [&appearances, palette];
             BrickBuffers {
@@ -254,13 +275,13 @@ impl<'a> SceneUpload<'a> {
                     Some(_) => BrickBounds::of_box(uploaded.space.bounds),
                     None => BrickBounds::of_spheres(&brick.spheres),
                 },
-                trace_group: group("pinhole brick", trace_layout, &traced, of_structure),
-                surface_group: group("pinhole surface", surface_layout, &shaded, vec![]),
-                appearance_group: group("pinhole appearance", &layouts.appearance, &seen, vec![]),
+                trace_group: numbered_group(device, "pinhole brick", trace_layout, traced),
+                surface_group: group("pinhole surface", surface_layout, &shaded),
+                appearance_group: group("pinhole appearance", &layouts.appearance, &seen),
                 ids,
                 appearances,
                 shape_count,
-                farthest: lists.map(|(_, farthest)| farthest),
+                farthest,
             }
         });
         let buffers = buffers.await?;
@@ -327,4 +348,34 @@ fn joined(
         buffer.unmap();
     }
     buffer
+}
+
+/// Creates a texture whose texels are the elements of slices one after another, row by row.
+fn list_texture(make: Make<'_>, label: &'static str, format: TextureFormat, slices: &[&[u8]]) -> TextureView {
+    let bytes_per_texel = format.block_copy_size(None).unwrap_or(1) as usize;
+    let count: usize = slices.iter().map(|slice| slice.len() / bytes_per_texel).sum();
+    let usage = TextureUsages::STORAGE_BINDING | TextureUsages::COPY_DST;
+    let size = [TEXELS_PER_ROW as u32, count.div_ceil(TEXELS_PER_ROW) as u32];
+    let texture = texture(make.device, label, format, size, usage);
+    let mut at = 0;
+    for slice in slices {
+        let mut rest = *slice;
+        while !rest.is_empty() {
+            // The rest of a row, or all whole rows.
+            let (x, left) = (at % TEXELS_PER_ROW, rest.len() / bytes_per_texel);
+            let rows = if x == 0 { (left / TEXELS_PER_ROW).max(1) } else { 1 };
+            let width = left.min(TEXELS_PER_ROW - x);
+            let (piece, after) = rest.split_at(rows * width * bytes_per_texel);
+            let mut target = texture.as_image_copy();
+            (target.origin.x, target.origin.y) = (x as u32, (at / TEXELS_PER_ROW) as u32);
+            let layout = wgpu::TexelCopyBufferLayout {
+                offset: 0,
+                bytes_per_row: Some((width * bytes_per_texel) as u32),
+                rows_per_image: None,
+            };
+            make.queue.write_texture(target, piece, layout, extent([width as u32, rows as u32]));
+            (at, rest) = (at + rows * width, after);
+        }
+    }
+    texture.create_view(&wgpu::TextureViewDescriptor::default())
 }

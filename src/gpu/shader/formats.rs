@@ -1,18 +1,10 @@
-//! The formats of the textures that kernels read and write.
+//! The formats of the textures that kernels write.
 
 use wgpu::TextureFormat;
 
 pub(crate) const DEPTH_FORMAT: TextureFormat = TextureFormat::R32Float;
 pub(crate) const NORMAL_FORMAT: TextureFormat = TextureFormat::Rgba32Float;
 pub(crate) const ID_FORMAT: TextureFormat = TextureFormat::R32Uint;
-
-/// The formats of the lists of tiles: the indices of spheres, spheres, and lower bounds of distances.
-pub(crate) const PLACE_FORMAT: TextureFormat = TextureFormat::R32Uint;
-pub(crate) const LISTED_FORMAT: TextureFormat = TextureFormat::Rgba32Float;
-pub(crate) const NEAR_FORMAT: TextureFormat = TextureFormat::R32Float;
-
-/// Width of the textures from which kernels read elements of lists, row by row.
-pub(crate) const TEXELS_PER_ROW: usize = 1 << 12;
 
 /// The format of the colour texture. Every WebGPU device supports all variants.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]

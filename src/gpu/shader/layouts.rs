@@ -7,8 +7,9 @@ use wgpu::{BindGroupLayout, BindGroupLayoutEntry, BindingType, Device};
 use crate::accel::{BrickKind, Primitive, Structure};
 use crate::gpu::error::GpuError;
 use crate::gpu::passes::renderer_options::RendererOptions;
-use crate::gpu::shader::formats::{DEPTH_FORMAT, ID_FORMAT, LISTED_FORMAT, NEAR_FORMAT, NORMAL_FORMAT, PLACE_FORMAT};
+use crate::gpu::shader::formats::{DEPTH_FORMAT, ID_FORMAT, NORMAL_FORMAT};
 use crate::gpu::shader::records;
+use crate::gpu::shader::textures::Searched;
 
 /// The layouts of all bind groups of the kernels for primary rays.
 #[derive(Debug)]
@@ -45,8 +46,9 @@ impl Layouts {
             frame: layout("pinhole frame", &frame),
             brick: BrickKind::of(structures, primitives)
                 .map(|kind| {
-                    let mut kinds = vec![uniform::<records::Brick>(), shapes(kind.primitive), storage::<u32>(true)];
-                    kinds.extend(of_structure(kind.structure));
+                    let mut kinds = vec![uniform::<records::Brick>()];
+                    kinds.extend([Searched::Shapes, Searched::Ids].map(|searched| searched.binding_type(device)));
+                    kinds.extend(of_structure(device, kind.structure));
                     (kind, layout("pinhole brick", &kinds))
                 })
                 .collect(),
@@ -54,7 +56,7 @@ impl Layouts {
                 "pinhole surface",
                 &[
                     uniform::<records::Brick>(),
-                    shapes(Primitive::Sphere),
+                    storage::<records::Sphere>(true),
                     storage::<u32>(true),
                     storage::<records::Color>(true),
                 ],
@@ -88,13 +90,6 @@ impl Layouts {
     }
 }
 
-/// Binding type of the shapes of a brick.
-fn shapes(primitive: Primitive) -> BindingType {
-    match primitive {
-        Primitive::Sphere => storage::<records::Sphere>(true),
-    }
-}
-
 /// Creates a layout of bindings with numbers from 0.
 pub(crate) fn layout(device: &Device, label: &str, kinds: &[BindingType]) -> BindGroupLayout {
     let kinds: Vec<_> = (0..).zip(kinds.iter().copied()).collect();
@@ -109,18 +104,13 @@ pub(crate) fn layout_of(device: &Device, label: &str, kinds: &[(u32, BindingType
     device.create_bind_group_layout(&wgpu::BindGroupLayoutDescriptor { label: Some(label), entries: &entries })
 }
 
-/// Binding types of the data of a structure besides its shapes and ids, from binding 3 on.
-fn of_structure(structure: Structure) -> Vec<BindingType> {
+/// Binding type of the data of a structure besides its shapes and ids, at binding 3.
+fn of_structure(device: &Device, structure: Structure) -> Option<BindingType> {
     match structure {
-        Structure::List => vec![],
-        Structure::Tiles => {
-            let textures = [PLACE_FORMAT, LISTED_FORMAT, NEAR_FORMAT].map(read_texture);
-            textures.into_iter().chain([storage::<u32>(false)]).collect()
-        }
-        Structure::RayQuery => vec![BindingType::AccelerationStructure { vertex_return: false }],
-        Structure::WideTree | Structure::Grid | Structure::NestedGrid => {
-            vec![storage::<[u32; 4]>(true)]
-        }
+        Structure::List => None,
+        Structure::Tiles => Some(storage::<u32>(false)),
+        Structure::RayQuery => Some(BindingType::AccelerationStructure { vertex_return: false }),
+        Structure::WideTree | Structure::Grid | Structure::NestedGrid => Some(Searched::Words.binding_type(device)),
     }
 }
 
@@ -146,10 +136,6 @@ fn target(format: wgpu::TextureFormat) -> BindingType {
     storage_texture(format, wgpu::StorageTextureAccess::WriteOnly)
 }
 
-fn read_texture(format: wgpu::TextureFormat) -> BindingType {
-    storage_texture(format, wgpu::StorageTextureAccess::ReadOnly)
-}
-
-fn storage_texture(format: wgpu::TextureFormat, access: wgpu::StorageTextureAccess) -> BindingType {
+pub(super) fn storage_texture(format: wgpu::TextureFormat, access: wgpu::StorageTextureAccess) -> BindingType {
     BindingType::StorageTexture { access, format, view_dimension: wgpu::TextureViewDimension::D2 }
 }

@@ -14,6 +14,7 @@ mod pipeline;
 mod primary;
 pub(super) mod records;
 mod row_order;
+pub(super) mod textures;
 
 pub(super) use kernel::{Constant, Kernel};
 pub(super) use part::Part;

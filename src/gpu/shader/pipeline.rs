@@ -3,6 +3,7 @@
 use wgpu::{ComputePipeline, Device};
 
 use super::kernel::Kernel;
+use super::textures::{reads_textures, with_textures};
 use crate::gpu::checks::Checks;
 use crate::gpu::error::GpuError;
 
@@ -28,7 +29,7 @@ pub(crate) fn pipeline_with(
     let name = kernel.name();
     let constants = kernel.values_of_constants();
     let create = || {
-        let (source, constants) = source(kernel, &constants);
+        let (source, constants) = source(device, kernel, &constants);
         let label = Some(name.as_str());
         let module = shader_module(device, wgpu::ShaderModuleDescriptor { label, source });
         let layout = device.create_pipeline_layout(&wgpu::PipelineLayoutDescriptor {
@@ -53,8 +54,13 @@ pub(crate) fn pipeline_with(
 }
 
 /// The source of a kernel as a device takes it, and the constants that still need values. A browser takes WGSL.
-fn source<'a>(kernel: &Kernel, constants: &'a [(&'a str, f64)]) -> (wgpu::ShaderSource<'static>, &'a [(&'a str, f64)]) {
+fn source<'a>(
+    device: &Device,
+    kernel: &Kernel,
+    constants: &'a [(&'a str, f64)],
+) -> (wgpu::ShaderSource<'static>, &'a [(&'a str, f64)]) {
     let source = kernel.source();
+    let source = if reads_textures(device) { with_textures(&source) } else { source };
     #[cfg(not(target_arch = "wasm32"))]
     if let Some(module) = super::fold::folded(&source, kernel.entry_point, constants) {
         return (wgpu::ShaderSource::Naga(std::borrow::Cow::Owned(module)), &[]);
