@@ -11,7 +11,7 @@ use crate::gpu::headless::{readback, tile_plan};
 use crate::gpu::passes::bands::{BandBuffers, tile_size};
 use crate::gpu::passes::emitter_table;
 use crate::gpu::scene::appearance;
-use crate::gpu::shader::{records, textures};
+use crate::gpu::shader::records;
 use crate::image::LayerSet;
 use crate::recording::TracedPixel;
 use crate::render::RenderSettings;
@@ -111,7 +111,7 @@ impl RenderPlan {
             true => tile_plan::buffers(scene.len(), tile_size),
             false => accel.buffers.clone(),
         };
-        let scene_buffers = scene_buffers(scene, of_structure, device);
+        let scene_buffers = scene_buffers(scene, of_structure);
         let band = BandBuffers::new(limits, tile_size, keeps_rays);
         let tile_buffers = band.planned();
         let mut tile_textures = band.planned_read_back();
@@ -230,20 +230,9 @@ impl RenderPlan {
     }
 }
 
-/// The buffers of the structure, and the buffers that shading reads. Kernels of software devices search textures, and shade
-/// the spheres of a buffer.
-pub(crate) fn scene_buffers(
-    scene: &Scene,
-    mut buffers: Vec<PlannedBuffer>,
-    device: &DeviceLimits,
-) -> Vec<PlannedBuffer> {
+/// The buffers of the structure, and the buffers that shading reads.
+pub(crate) fn scene_buffers(scene: &Scene, mut buffers: Vec<PlannedBuffer>) -> Vec<PlannedBuffer> {
     let spheres = buffers.iter().find(|buffer| buffer.name == "spheres").copied();
-    if let (wgpu::DeviceType::Cpu, Some(spheres)) = (device.device_type, spheres) {
-        let bytes_per_binding = spheres.bytes_per_binding + textures::PADDING;
-        let bricks = spheres.bytes.div_ceil(spheres.bytes_per_binding.max(1));
-        let bytes = spheres.bytes + bricks * textures::PADDING;
-        buffers.push(PlannedBuffer { name: "searched spheres", bytes, bytes_per_binding });
-    }
     let words = appearance::words_per_sphere(scene.checked_appearance());
     if let Some(PlannedBuffer { bytes, bytes_per_binding, .. }) = spheres.filter(|_| words > 0) {
         // A sphere has four numbers.
@@ -265,7 +254,7 @@ pub(crate) fn tile_count(film: &Film, [width, height]: [u32; 2]) -> u64 {
 /// Description of a planned buffer for error messages.
 fn in_words(name: &str) -> &'static str {
     match name {
-        "spheres" | "searched spheres" => "the buffer of spheres",
+        "spheres" => "the buffer of spheres",
         "ids" | "ids, cells and references" => "the buffer of ids",
         "colors" => "the buffer of colors",
         "palette" => "the palette",
@@ -359,8 +348,7 @@ mod tests {
         let mut spheres = spheres;
         for words in [1, 2] {
             let scene = Scene::from_parts(SphereArray::F32(spheres), appearance.clone()).unwrap();
-            let device = DeviceLimits { limits: Limits::default(), device_type: DeviceType::DiscreteGpu };
-            let buffers = scene_buffers(&scene, accel.buffers.clone(), &device);
+            let buffers = scene_buffers(&scene, accel.buffers.clone());
             let bytes = |name| buffers.iter().find(|buffer| buffer.name == name).unwrap().bytes;
             assert_eq!((bytes("colors"), bytes("palette")), (4 * words * count as u64, 16 * 256));
             spheres = scene.spheres().to_vec();
@@ -375,10 +363,9 @@ mod tests {
     fn a_software_device_takes_its_memory_from_the_host() {
         let gpu = plan(1024, LayerSet::COLOR, DeviceType::DiscreteGpu);
         let software = plan(1024, LayerSet::COLOR, DeviceType::Cpu);
-        let searched = software.scene_buffers.iter().find(|buffer| buffer.name == "searched spheres").unwrap();
-        assert_eq!(software.device_bytes, gpu.device_bytes + searched.bytes);
+        assert_eq!(software.device_bytes, gpu.device_bytes);
         assert_eq!(software.host_peak, PICTURE);
-        assert_eq!(software.host_bytes, gpu.host_bytes + software.device_bytes);
+        assert_eq!(software.host_bytes, gpu.host_bytes + gpu.device_bytes);
         assert_eq!(software.check(&Limits::default(), Some(software.host_bytes)), Ok(()));
         assert!(matches!(
             software.check(&Limits::default(), Some(software.host_bytes - 1)),

@@ -231,20 +231,13 @@ impl<'a> SceneUpload<'a> {
             let shape_count = record.shape_count;
             let record = filled("pinhole brick", uniform, &[bytemuck::bytes_of(&record)]);
             let appearances = filled("pinhole appearances", storage, &[appearances]);
-            let in_buffer = filled("pinhole shapes", storage, &[shapes]);
-            // Bricks of tiles that are only shaded have no lists.
-            let is_searched = tiles.is_none_or(|lists| !lists.nears.is_empty());
-            let shapes = if is_searched { shapes } else { &no_shape[..] };
+            let shapes = filled("pinhole shapes", storage, &[shapes]);
             let mut searched = |label, searched: Searched, slices: &[&[u8]]| match reads_textures(device) {
                 true => {
                     uploaded.bytes += slices.iter().map(|slice| slice.len() as u64).sum::<u64>();
                     SearchedData::Texture(list_texture(Make { device, queue }, label, searched.format(), slices))
                 }
                 false => SearchedData::Buffer(joined((device, queue), &mut uploaded.bytes, label, storage, slices)),
-            };
-            let shapes = match reads_textures(device) {
-                true => searched("pinhole searched shapes", Searched::Shapes, &[shapes]),
-                false => SearchedData::Buffer(in_buffer.clone()),
             };
             let ids = searched("pinhole ids", Searched::Ids, &with_ids);
             let words = words.map(|words| searched("pinhole structure", Searched::Words, &[words]));
@@ -261,11 +254,12 @@ impl<'a> SceneUpload<'a> {
             let of_structure = words.as_ref().map(SearchedData::binding);
             let of_structure = of_structure.or(query.as_ref().map(wgpu::Tlas::as_binding));
             let of_structure = of_structure.or(farthest.as_ref().map(Buffer::as_entire_binding));
-            let traced = [record.as_entire_binding(), shapes.binding(), ids.binding()].into_iter().chain(of_structure);
+            let traced = [record.as_entire_binding(), shapes.as_entire_binding(), ids.binding()];
+            let traced = traced.into_iter().chain(of_structure);
             let group = |label, layout, buffers: &[&Buffer]| {
                 numbered_group(device, label, layout, buffers.iter().map(|buffer| buffer.as_entire_binding()))
             };
-            let shaded = [&record, &in_buffer, &appearances, palette];
+            let shaded = [&record, &shapes, &appearances, palette];
             let surface_layout = layouts.surface_of(kind.primitive);
             let seen = [&appearances, palette];
             BrickBuffers {
@@ -355,7 +349,7 @@ fn list_texture(make: Make<'_>, label: &'static str, format: TextureFormat, slic
     let bytes_per_texel = format.block_copy_size(None).unwrap_or(1) as usize;
     let count: usize = slices.iter().map(|slice| slice.len() / bytes_per_texel).sum();
     let usage = TextureUsages::STORAGE_BINDING | TextureUsages::COPY_DST;
-    let size = [TEXELS_PER_ROW as u32, count.div_ceil(TEXELS_PER_ROW) as u32];
+    let size = [count.min(TEXELS_PER_ROW), count.div_ceil(TEXELS_PER_ROW)].map(|side| side as u32);
     let texture = texture(make.device, label, format, size, usage);
     let mut at = 0;
     for slice in slices {

@@ -46,8 +46,8 @@ impl Layouts {
             frame: layout("pinhole frame", &frame),
             brick: BrickKind::of(structures, primitives)
                 .map(|kind| {
-                    let mut kinds = vec![uniform::<records::Brick>()];
-                    kinds.extend([Searched::Shapes, Searched::Ids].map(|searched| searched.binding_type(device)));
+                    let (shapes, ids) = (storage::<records::Sphere>(true), Searched::Ids.binding_type(device));
+                    let mut kinds = vec![uniform::<records::Brick>(), shapes, ids];
                     kinds.extend(of_structure(device, kind.structure));
                     (kind, layout("pinhole brick", &kinds))
                 })

@@ -1,31 +1,28 @@
 //! Kernels for software devices, which read what they search from textures.
 //!
 //! Lavapipe (Mesa 22.3) reads a vector for eight invocations in 9 ns from a storage texture and in 23 ns from a storage
-//! buffer, because it reads buffers in a loop with branches. So the spheres of a brick, their ids, and the words of its
-//! structure are in textures there. The values are the same to the bit. GPUs were not measured, and keep buffers.
+//! buffer, because it reads buffers in a loop with branches. So the ids of a brick and the words of its structure are in
+//! textures there, with the same values. Spheres stay in a buffer: few invocations of eight read them at a time, which buffers
+//! serve as quickly, and shading reads them, too. GPUs were not measured, and keep buffers.
 
 use wgpu::{BindingType, Device, DeviceType, StorageTextureAccess, TextureFormat};
 
 use super::layouts::{storage, storage_texture};
 
-/// A buffer of a brick that kernels search.
+/// Data of a brick that kernels search.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) enum Searched {
-    Shapes,
+    /// The ids of the spheres, and what follows them in the same buffer.
     Ids,
     /// The balls of a grid, or the nodes of a tree.
     Words,
 }
 
-/// Width of the textures, whose texels follow each other row by row.
+/// The greatest width of the textures, whose texels follow each other row by row.
 pub(crate) const TEXELS_PER_ROW: usize = 1 << 12;
 
-/// The most bytes of the textures of a brick that are not used, in the last rows.
-pub(crate) const PADDING: u64 = (16 + 4 + 16) * TEXELS_PER_ROW as u64;
-
 /// The names in WGSL. Only kernels with `ids` search.
-const NAMES: [(&str, Searched); 4] =
-    [("shapes", Searched::Shapes), ("ids", Searched::Ids), ("balls", Searched::Words), ("nodes", Searched::Words)];
+const NAMES: [(&str, Searched); 3] = [("ids", Searched::Ids), ("balls", Searched::Words), ("nodes", Searched::Words)];
 
 /// Whether kernels of a device search textures.
 pub(crate) fn reads_textures(device: &Device) -> bool {
@@ -35,7 +32,6 @@ pub(crate) fn reads_textures(device: &Device) -> bool {
 impl Searched {
     pub(crate) fn format(self) -> TextureFormat {
         match self {
-            Self::Shapes => TextureFormat::Rgba32Float,
             Self::Ids => TextureFormat::R32Uint,
             Self::Words => TextureFormat::Rgba32Uint,
         }
@@ -46,14 +42,13 @@ impl Searched {
         match self {
             _ if reads_textures(device) => storage_texture(self.format(), StorageTextureAccess::ReadOnly),
             Self::Ids => storage::<u32>(true),
-            Self::Shapes | Self::Words => storage::<[u32; 4]>(true),
+            Self::Words => storage::<[u32; 4]>(true),
         }
     }
 
     /// The type in WGSL, and the components of a texel.
     fn texel(self) -> [&'static str; 2] {
         match self {
-            Self::Shapes => ["rgba32float", ""],
             Self::Ids => ["r32uint", ".x"],
             Self::Words => ["rgba32uint", ""],
         }
