@@ -125,8 +125,7 @@ impl fmt::Display for LegalHits {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         let mut answers: Vec<String> = Vec::new();
         for hit in &self.spheres {
-            let sides = [hit.near, hit.far].into_iter().flatten();
-            answers.extend(sides.map(|side| format!("sphere {} at {side}", hit.id)));
+            answers.extend(hit.crossings().map(|side| format!("sphere {} at {side}", hit.id)));
         }
         if self.miss {
             answers.push("a miss".to_owned());

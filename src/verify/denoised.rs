@@ -16,12 +16,9 @@ use super::rounding::{DIVIDE, FLUSH, Interval, PAD, SQRT, U, gamma};
 use crate::image::Image;
 use crate::image::color::LUMINANCE;
 use crate::image::denoise::{Guides, MissingGuide, PASSES, REACH};
-use crate::parallel::{map_parts, ranges};
+use crate::parallel;
 use crate::recording::pixel_at;
 use crate::verify::certificate::Outcome;
-
-/// The number of pixels that a thread takes at a time.
-const CHUNK: usize = 1 << 10;
 
 /// The largest number of violations that are kept. All are counted.
 const KEPT: usize = 100;
@@ -201,14 +198,10 @@ pub(super) fn filtered(
     for pass in 0..PASSES {
         // The reach of the passes after this one.
         let wanted = near(size, indices.clone(), REACH - 2 * ((2 << pass) - 1));
-        let parts = map_parts(ranges(lights.len(), CHUNK), |range| {
-            let light = |index: usize| match wanted[index] {
-                true => filter.filtered(&lights, index, 1 << pass),
-                false => lights[index],
-            };
-            range.map(light).collect::<Vec<Light>>()
+        lights = parallel::map(lights.len(), |index| match wanted[index] {
+            true => filter.filtered(&lights, index, 1 << pass),
+            false => lights[index],
         });
-        lights = parts.concat();
     }
     lights
 }
@@ -276,8 +269,7 @@ impl Filter<'_> {
                     let (low, high) = (other[channel].low - base[channel], other[channel].high - base[channel]);
                     sums[channel].low += low * if low < 0.0 { weight.high } else { weight.low };
                     sums[channel].high += high * if high > 0.0 { weight.high } else { weight.low };
-                    let size = other[channel].low.abs().max(other[channel].high.abs());
-                    sizes[channel] += weight.high * size;
+                    sizes[channel] += weight.high * other[channel].size();
                     hull[channel] = hull[channel].union(other[channel]);
                 }
                 sums[3].low += weight.low * weight.low * other[3].low;
@@ -293,8 +285,7 @@ impl Filter<'_> {
             let high = high / if high > 0.0 { weights.low } else { weights.high };
             let error = (rounding * sizes[i] + MOST_FLUSHED) / weights.low;
             let Interval { low: least, high: most } = hull[i];
-            let size = least.abs().max(most.abs());
-            let of_size = rounding * size + MOST_FLUSHED / weights.low;
+            let of_size = rounding * hull[i].size() + MOST_FLUSHED / weights.low;
             // A bound that is NaN gives way to the other one.
             Interval {
                 low: (base[i] + low - error).max(least - of_size),
@@ -379,7 +370,7 @@ fn alike(light: &Light, other: &Light) -> Interval {
         let (a, b) = (light[channel], other[channel]);
         change.low += weight * (b.low - a.high);
         change.high += weight * (b.high - a.low);
-        size += weight * (a.low.abs().max(a.high.abs()) + b.low.abs().max(b.high.abs()));
+        size += weight * (a.size() + b.size());
     }
     // A difference, a constant that is rounded, a product, and a sum of three.
     let error = PAD * gamma(6) * size + 4.0 * FLUSH;

@@ -147,11 +147,6 @@ pub struct FinishedRequest<'a> {
 type Range = Option<[[f64; 2]; 4]>;
 
 impl FinishedRequest<'_> {
-    /// The picture of the reference with what is drawn over it.
-    fn annotated(&self) -> Option<Vec<u8>> {
-        self.annotated_by(|_| {})
-    }
-
     /// The samples of the exact picture after a change, and with what is drawn over it.
     fn annotated_by(&self, change: impl Fn(&mut [u8])) -> Option<Vec<u8>> {
         let (annotate, Samples::Encoded(exact)) = (self.annotate?, self.exact.samples) else { return None };
@@ -229,7 +224,7 @@ impl Checker<'_> {
             picture.check([film.width() * views.len() as u32, film.height()])?;
         }
         exact.check(size)?;
-        let annotated = request.annotated();
+        let annotated = request.annotated_by(|_| {});
         let by_intervals = settings.primary().filter(|_| views.len() == 1 && annotated.is_none());
         let legal = by_intervals.map(|primary| self.certify_written(&views[0], &primary, picture)).transpose()?;
         let exact = match &annotated {

@@ -213,7 +213,7 @@ pub struct LegalHit {
 }
 
 impl LegalHit {
-    fn crossings(&self) -> impl Iterator<Item = Interval> {
+    pub(super) fn crossings(&self) -> impl Iterator<Item = Interval> {
         [self.near, self.far].into_iter().flatten()
     }
 
@@ -276,26 +276,31 @@ impl LegalHits {
             if is_left_out(candidate.sphere) {
                 return self.limit;
             }
-            if let Some((hit, may_miss)) = legal_hit(candidate, line, slack) {
-                if hit.lowest() <= self.limit {
-                    self.spheres.push(hit);
-                }
-                if !may_miss {
-                    self.miss = false;
-                    self.limit = self.limit.min(hit.highest());
-                }
-            }
+            self.add(candidate, line, slack);
             self.limit
         });
-        self.spheres.retain(|hit| hit.lowest() <= self.limit);
-        self.drop_copies();
+        self.drop_hidden();
     }
 
-    /// Among spheres that are equal to the bit, keeps the one with the smallest id. Kernels find the same distance for
-    /// equal spheres, to the bit, because they share one sphere test, and at equal distances the smaller id wins. This
-    /// is an assumption: WGSL does not guarantee that two kernels, such as the kernels of two bricks, compile the test
-    /// in the same way.
-    fn drop_copies(&mut self) {
+    /// Adds the hit of a sphere, if there is one that may be nearer than known hits.
+    fn add(&mut self, candidate: &Candidate, line: &Line, slack: Slack) {
+        if let Some((hit, may_miss)) = legal_hit(candidate, line, slack) {
+            if hit.lowest() <= self.limit {
+                self.spheres.push(hit);
+            }
+            if !may_miss {
+                self.miss = false;
+                self.limit = self.limit.min(hit.highest());
+            }
+        }
+    }
+
+    /// Drops spheres that others certainly hide. Among spheres that are equal to the bit, keeps the one with the
+    /// smallest id. Kernels find the same distance for equal spheres, to the bit, because they share one sphere test,
+    /// and at equal distances the smaller id wins. This is an assumption: WGSL does not guarantee that two kernels,
+    /// such as the kernels of two bricks, compile the test in the same way.
+    fn drop_hidden(&mut self) {
+        self.spheres.retain(|hit| hit.lowest() <= self.limit);
         if self.spheres.len() > 1 {
             self.spheres.sort_unstable_by_key(|hit| (hit.sphere, hit.id));
             self.spheres.dedup_by_key(|hit| hit.sphere);
@@ -322,16 +327,9 @@ mod tests {
         let mut legal = LegalHits::default();
         legal.clear();
         for (sphere, id) in spheres.iter().zip(0..) {
-            if let Some((hit, may_miss)) = legal_hit(&Candidate { sphere: *sphere, id }, line, Slack::default()) {
-                legal.spheres.push(hit);
-                if !may_miss {
-                    legal.miss = false;
-                    legal.limit = legal.limit.min(hit.highest());
-                }
-            }
+            legal.add(&Candidate { sphere: *sphere, id }, line, Slack::default());
         }
-        legal.spheres.retain(|hit| hit.lowest() <= legal.limit);
-        legal.drop_copies();
+        legal.drop_hidden();
         legal
     }
 

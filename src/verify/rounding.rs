@@ -110,6 +110,18 @@ impl std::fmt::Display for Interval {
     }
 }
 
+/// The greatest f32 that is not above a number.
+pub(super) fn down(value: f64) -> f32 {
+    let near = value as f32;
+    if f64::from(near) > value { near.next_down() } else { near }
+}
+
+/// The least f32 that is not below a number.
+pub(super) fn up(value: f64) -> f32 {
+    let near = value as f32;
+    if f64::from(near) < value { near.next_up() } else { near }
+}
+
 /// Whether a number on the device is within two roundings of the requested number.
 pub(crate) fn is_near(found: f32, asked: f64) -> bool {
     (f64::from(found) - asked).abs() <= 2.0 * U * asked.abs() + FLUSH

@@ -12,6 +12,7 @@ use glam::DVec3;
 
 use crate::geometry::math::wide;
 use crate::render::Shading;
+use crate::verify::number::Number;
 use crate::verify::rounding::{DIVIDE, FLUSH, Interval, PAD, SQRT, U, gamma, unit_error};
 
 /// The smallest magnitude of a component. It replaces smaller ones, so that the distance to a plane is finite.
@@ -335,7 +336,5 @@ pub(super) fn legal_color(
 
 /// A number that is passed on unchanged, or zero if it is subnormal.
 pub(super) fn exactly(value: f32) -> Interval {
-    let value = f64::from(value);
-    let low = if value.abs() < FLUSH { value.min(0.0) } else { value };
-    Interval { low, high: if value.abs() < FLUSH { value.max(0.0) } else { value } }
+    Number::recorded(value).interval()
 }

@@ -3,7 +3,7 @@
 //! too wide to say anything, whoever made it.
 
 use crate::image::Image;
-use crate::parallel::{map_parts, ranges};
+use crate::parallel;
 use crate::recording::lighting::means;
 use crate::recording::lit::{LitRecording, PixelSums};
 use crate::verify::Checker;
@@ -11,9 +11,6 @@ use crate::verify::hit::LegalHits;
 use crate::verify::lit::certificate::LitCertificate;
 use crate::verify::lit::check::LitCheck;
 use crate::verify::lit::upload;
-
-/// The pixels that a thread takes at a time.
-const CHUNK: usize = 16;
 
 /// Pixels whose samples were recorded.
 #[derive(Clone, Debug)]
@@ -43,21 +40,16 @@ impl Witness {
         let [x, y, width, height] = given.rectangle();
         for sample in samples {
             let is_next = is_right && sample.sample == self.samples;
-            let parts = map_parts(ranges(self.pixels.len(), CHUNK), |range| {
-                let mut hits = LegalHits::default();
-                let sums_after = |at: usize| {
-                    let [i, j] = self.pixels[at];
-                    let before = self.sums[at].filter(|_| is_next)?;
-                    let [i, j] = [i.checked_sub(x).filter(|i| *i < width)?, j.checked_sub(y).filter(|j| *j < height)?];
-                    let index = (j * width + i) as usize;
-                    let mut part = LitCertificate::default();
-                    check.judge_sample(sample, index, &mut part, &mut hits);
-                    let is_legal = part.violations.is_empty() && sample.film.before[index] == before;
-                    is_legal.then(|| sample.film.after[index])
-                };
-                range.map(sums_after).collect::<Vec<_>>()
+            self.sums = parallel::map(self.pixels.len(), |at| {
+                let [i, j] = self.pixels[at];
+                let before = self.sums[at].filter(|_| is_next)?;
+                let [i, j] = [i.checked_sub(x).filter(|i| *i < width)?, j.checked_sub(y).filter(|j| *j < height)?];
+                let index = (j * width + i) as usize;
+                let mut part = LitCertificate::default();
+                check.judge_sample(sample, index, &mut part, &mut LegalHits::default());
+                let is_legal = part.violations.is_empty() && sample.film.before[index] == before;
+                is_legal.then(|| sample.film.after[index])
             });
-            self.sums = parts.concat();
             self.samples += 1;
         }
     }

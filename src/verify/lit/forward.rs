@@ -38,10 +38,8 @@ pub(crate) fn inputs(checker: &Checker<'_>, view: &View<'_>, settings: &RenderSe
     let uploaded = expected_view(&camera, scene.origin(), checker.candidates.bounds());
     let emitters = Emitters::of(scene);
     let host = HostLighting::new(settings, scene.origin(), scene.checked_appearance(), &emitters, &camera.vectors);
-    let emitters_of_device = match host.sources.emitters {
-        true => emitter_records(&emitters, &EmissiveSphere::all(scene, &emitters)),
-        false => Vec::new(),
-    };
+    let emissive = || emitter_records(&emitters, &EmissiveSphere::all(scene, &emitters));
+    let emitters_of_device = host.sources.emitters.then(emissive).unwrap_or_default();
     Some(LitInputs {
         camera,
         occluders: box_of_occluders(scene).unwrap_or([uploaded.scene_min, uploaded.scene_max]),
@@ -139,9 +137,7 @@ impl LitCheck<'_> {
         }
         all
     }
-}
 
-impl LitCheck<'_> {
     /// The corners of the scene's box.
     pub(crate) fn corners(&self) -> [DVec3; 2] {
         [self.inputs.uploaded.scene_min, self.inputs.uploaded.scene_max].map(wide)
@@ -195,8 +191,7 @@ impl LitCheck<'_> {
 fn ray_hits(legal: &LegalHits, apart: f64, distance: impl Fn(u32) -> Number) -> impl Iterator<Item = RayHit> {
     let found = legal.spheres.iter().flat_map(move |hit| {
         let distance = distance(hit.id);
-        let sides = [hit.near, hit.far].into_iter().flatten().filter(|side| side.low <= legal.limit);
-        sides.map(move |side| RayHit {
+        hit.crossings().filter(|side| side.low <= legal.limit).map(move |side| RayHit {
             t: Number::between((side.low - apart).max(0.0), side.high + apart),
             distance,
             id: hit.id,

@@ -4,16 +4,16 @@
 use glam::DVec3;
 
 use crate::image::NO_ID;
+use crate::image::color::LUMINANCE;
 use crate::image::denoise::REACH;
 use crate::image::outline::{self, Outline};
-use crate::parallel::{map_parts, ranges};
+use crate::parallel;
 use crate::recording::pixel_at;
-use crate::verify::certificate::CHUNK;
 use crate::verify::denoised::{LegalGuide, Light, filtered, near, product};
 use crate::verify::hit::LegalHits;
 use crate::verify::lit::check::LitCheck;
 use crate::verify::lit::forward::PixelLight;
-use crate::verify::rounding::{DIVIDE, FLUSH, Interval, PAD, U, gamma};
+use crate::verify::rounding::{DIVIDE, FLUSH, Interval, PAD, U, down, gamma, up};
 use crate::verify::sphere::LegalNormals;
 
 /// The smallest albedo by which light is divided before noise is removed.
@@ -59,15 +59,10 @@ impl LitCheck<'_> {
             let alpha = |index: usize| lights[index].as_ref().map_or(any_alpha, |light| light.alpha);
             indices.iter().map(|index| Some(with_alpha(quiet[*index], alpha(*index)))).collect()
         } else {
-            let parts = map_parts(ranges(indices.len(), 16), |range| {
-                let mut hits = LegalHits::default();
-                let light = |at: usize| self.legal_pixel(pixel_at(indices[at], size[0]), &mut hits);
-                range
-                    .map(light)
-                    .map(|light| light.map(|light| with_alpha(light.color, light.alpha)))
-                    .collect::<Vec<_>>()
-            });
-            parts.concat()
+            parallel::map(indices.len(), |at| {
+                let light = self.legal_pixel(pixel_at(indices[at], size[0]), &mut LegalHits::default());
+                light.map(|light| with_alpha(light.color, light.alpha))
+            })
         };
         if let Some(lines) = lines {
             let covered = covered(size, &spots, &lines);
@@ -78,12 +73,8 @@ impl LitCheck<'_> {
         light
     }
 
-    fn all_pixels<T: Send + Clone>(&self, count: usize, find: impl Fn([u32; 2], &mut LegalHits) -> T + Sync) -> Vec<T> {
-        let parts = map_parts(ranges(count, CHUNK), |range| {
-            let mut hits = LegalHits::default();
-            range.map(|index| find(pixel_at(index, self.inputs.size[0]), &mut hits)).collect::<Vec<T>>()
-        });
-        parts.concat()
+    fn all_pixels<T: Send>(&self, count: usize, find: impl Fn([u32; 2], &mut LegalHits) -> T + Sync) -> Vec<T> {
+        parallel::map(count, |index| find(pixel_at(index, self.inputs.size[0]), &mut LegalHits::default()))
     }
 
     fn spot(&self, pixel: [u32; 2], hits: &mut LegalHits) -> Option<Spot> {
@@ -135,7 +126,7 @@ fn without_noise(
     spots: &[Option<Spot>],
     indices: &[usize],
 ) -> Vec<[Interval; 3]> {
-    let luminance = |color: [f64; 3]| (0..3).map(|i| crate::image::color::LUMINANCE[i] * color[i]).sum::<f64>();
+    let luminance = |color: [f64; 3]| (0..3).map(|i| LUMINANCE[i] * color[i]).sum::<f64>();
     let (mut guides, mut divided) = (Vec::with_capacity(spots.len()), Vec::with_capacity(spots.len()));
     for (light, spot) in lights.iter().zip(spots) {
         let unknown = PixelLight {
@@ -218,14 +209,9 @@ fn covered(size: [u32; 2], spots: &[Option<Spot>], outline: &Outline) -> Vec<[f6
     let [width, height] = size.map(|side| side as usize);
     let of_edge = |a: usize, b: usize| strengths(spots[a], spots[b], outline);
     let share = |which: usize| {
+        let outward = [down, up][which];
         outline::coverage_by([width, height], outline.width, |a, b| {
-            let strength = of_edge(a, b).map_or(0.0, |both| both[which]);
-            let near = strength as f32;
-            match which {
-                0 if f64::from(near) > strength => near.next_down(),
-                1 if f64::from(near) < strength => near.next_up(),
-                _ => near,
-            }
+            outward(of_edge(a, b).map_or(0.0, |both| both[which]))
         })
     };
     let (low, high) = (share(0), share(1));

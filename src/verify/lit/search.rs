@@ -229,8 +229,7 @@ impl LegalHits {
         hits.sort_by(|a, b| a.lowest().total_cmp(&b.lowest()));
         let place = |hit: &LegalHit| {
             // Written like the f32 beside them, because a device gives only f32.
-            let crossing = [hit.near, hit.far].into_iter().flatten().next();
-            let [low, high] = crossing.map_or([0.0; 2], |at| [at.low as f32, at.high as f32]);
+            let [low, high] = hit.crossings().next().map_or([0.0; 2], |at| [at.low as f32, at.high as f32]);
             match low < high {
                 true => format!("sphere {} at {low:?} to {high:?}", hit.id),
                 false => format!("sphere {} at {low:?}", hit.id),

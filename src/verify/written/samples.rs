@@ -1,8 +1,7 @@
 //! The colours that a conforming device may find for a pixel, and the samples in a file that are legal for them.
 
-use glam::DVec3;
-
 use crate::camera::View;
+use crate::geometry::math::wide;
 use crate::image::color::{to_srgb8, to_srgb16};
 use crate::image::encoding::{Bits, Encoding};
 use crate::recording::RequestedCamera;
@@ -11,7 +10,7 @@ use crate::verify::camera::CameraModel;
 use crate::verify::certificate::Verdict;
 use crate::verify::checker::Checker;
 use crate::verify::hit::LegalHits;
-use crate::verify::rounding::{Interval, U};
+use crate::verify::rounding::{Interval, U, down, up};
 use crate::verify::sphere::{LegalNormals, exactly, legal_color};
 use crate::verify::uploaded::expected_view;
 
@@ -35,11 +34,9 @@ impl<'a> PictureCheck<'a> {
     pub(super) fn new(checker: &'a Checker<'a>, view: &View<'_>, primary: &'a PrimarySettings) -> Self {
         let requested = RequestedCamera::of(view.camera);
         let uploaded = expected_view(&requested, checker.scene.origin(), checker.candidates.bounds());
-        let origin = DVec3::from(uploaded.origin.map(f64::from)).length();
-        let [min, max] = [uploaded.scene_min, uploaded.scene_max].map(|v| DVec3::from(v.map(f64::from)));
         let model = CameraModel::new(requested.kind, &uploaded, &view.film);
         // A device may choose another start, up to the size of the box away.
-        let moved = 2.0 * U * (origin + (max - min).length());
+        let moved = 2.0 * U * (wide(uploaded.origin).length() + model.diagonal());
         Self { checker, model, primary, moved }
     }
 
@@ -333,16 +330,4 @@ fn encode(bits: Bits, light: [f32; 3]) -> [f64; 3] {
         Bits::Eight => to_srgb8(light).map(f64::from),
         Bits::Sixteen => to_srgb16(light).map(f64::from),
     }
-}
-
-/// The greatest f32 that is not above a number.
-fn down(value: f64) -> f32 {
-    let near = value as f32;
-    if f64::from(near) > value { near.next_down() } else { near }
-}
-
-/// The least f32 that is not below a number.
-fn up(value: f64) -> f32 {
-    let near = value as f32;
-    if f64::from(near) < value { near.next_up() } else { near }
 }
