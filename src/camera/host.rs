@@ -289,38 +289,20 @@ impl HostMatrix {
     }
 }
 
-impl From<DMat4> for HostMatrix {
-    fn from(matrix: DMat4) -> Self {
-        Self(matrix)
-    }
+macro_rules! from_matrices {
+    ($($matrix:ty: $convert:expr;)+) => {$(
+        impl From<$matrix> for HostMatrix {
+            fn from(matrix: $matrix) -> Self {
+                Self($convert(&matrix))
+            }
+        }
+    )+};
 }
-
-impl From<Mat4> for HostMatrix {
-    fn from(matrix: Mat4) -> Self {
-        Self(matrix.as_dmat4())
-    }
-}
-
-impl From<[[f64; 4]; 4]> for HostMatrix {
-    fn from(columns: [[f64; 4]; 4]) -> Self {
-        Self(DMat4::from_cols_array_2d(&columns))
-    }
-}
-
-impl From<[[f32; 4]; 4]> for HostMatrix {
-    fn from(columns: [[f32; 4]; 4]) -> Self {
-        Self(Mat4::from_cols_array_2d(&columns).as_dmat4())
-    }
-}
-
-impl From<[f64; 16]> for HostMatrix {
-    fn from(numbers: [f64; 16]) -> Self {
-        Self(DMat4::from_cols_array(&numbers))
-    }
-}
-
-impl From<[f32; 16]> for HostMatrix {
-    fn from(numbers: [f32; 16]) -> Self {
-        Self(Mat4::from_cols_array(&numbers).as_dmat4())
-    }
+from_matrices! {
+    DMat4: DMat4::clone;
+    Mat4: Mat4::as_dmat4;
+    [[f64; 4]; 4]: DMat4::from_cols_array_2d;
+    [[f32; 4]; 4]: |columns| Mat4::from_cols_array_2d(columns).as_dmat4();
+    [f64; 16]: DMat4::from_cols_array;
+    [f32; 16]: |numbers| Mat4::from_cols_array(numbers).as_dmat4();
 }

@@ -34,9 +34,7 @@ impl Outline {
     pub fn thin() -> Self {
         Self { width: 1.2, color: LinearRgb::from_srgb8([0x34, 0x3a, 0x46]), depth: 0.01, angle: PI }
     }
-}
 
-impl Outline {
     /// Checks that every number is in its range.
     ///
     /// # Errors
@@ -86,9 +84,15 @@ const BAND: usize = 128;
 
 /// The fraction of each pixel that outlines cover. `None` if a layer is missing.
 fn coverage(image: &Image, outline: &Outline) -> Option<Vec<f32>> {
-    let layers = Layers { ids: image.id()?, depths: image.depth()?, normals: image.normal()? };
     let size = [image.width() as usize, image.height() as usize];
-    Some(coverage_by(size, outline.width, |a, b| strength(layers.spot(a), layers.spot(b), outline)))
+    Some(coverage_by(size, outline.width, strengths(image, outline)?))
+}
+
+/// The strength of the line between two pixels of a picture, by their indices. `None` if a layer is missing.
+fn strengths(image: &Image, outline: &Outline) -> Option<impl Fn(usize, usize) -> f32 + Sync> {
+    let (ids, depths, normals) = (image.id()?, image.depth()?, image.normal()?);
+    let spot = move |index: usize| Spot { id: ids[index], depth: depths[index], normal: normals[index] };
+    Some(move |a, b| strength(spot(a), spot(b), outline))
 }
 
 /// The distance along each axis, in pixels, beyond which an edge does not reach a pixel.
@@ -108,19 +112,6 @@ pub(crate) fn coverage_by(
         Edges::find(columns, around, &strength).smoothed().covered(rows, width)
     });
     bands.concat()
-}
-
-/// The layers that contain the edges.
-struct Layers<'a> {
-    ids: &'a [u32],
-    depths: &'a [f32],
-    normals: &'a [[f32; 3]],
-}
-
-impl Layers<'_> {
-    fn spot(&self, index: usize) -> Spot {
-        Spot { id: self.ids[index], depth: self.depths[index], normal: self.normals[index] }
-    }
 }
 
 /// The strength of the line between two pixels, from 0 to 1. A line fades in as jumps in depth grow from the smallest
@@ -364,9 +355,7 @@ mod tests {
         let image =
             two([width, height], [1.0, 2.0], |index| (index % width) as f32 > 10.0 + 0.05 * (index / width) as f32);
         let outline = Outline::default();
-        let layers =
-            Layers { ids: image.id().unwrap(), depths: image.depth().unwrap(), normals: image.normal().unwrap() };
-        let at_once = Edges::find(width, 0..height, |a, b| strength(layers.spot(a), layers.spot(b), &outline));
+        let at_once = Edges::find(width, 0..height, strengths(&image, &outline).unwrap());
         let at_once = at_once.smoothed().covered(0..height, outline.width);
         assert_eq!(coverage(&image, &outline).unwrap(), at_once);
     }

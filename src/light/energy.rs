@@ -182,7 +182,7 @@ fn mean_weight(lobe: Lobe, cosine: f64, points: &[[f64; 2]]) -> f64 {
 }
 
 /// Smith's function Λ for GGX, at a cosine.
-fn smith(cosine: f64, alpha: f64) -> f64 {
+pub(crate) fn smith(cosine: f64, alpha: f64) -> f64 {
     let square = cosine * cosine;
     0.5 * ((1.0 + alpha * alpha * (1.0 - square) / square).sqrt() - 1.0)
 }
@@ -198,8 +198,9 @@ fn visible_normal(view: DVec3, alpha: f64, [x, y]: [f64; 2]) -> DVec3 {
     DVec3::new(alpha * normal.x, alpha * normal.y, normal.z.max(1e-6)).normalize_or(DVec3::Z)
 }
 
-/// The fraction of unpolarised light that is reflected, and the cosine of the refracted direction.
-fn fresnel(cosine: f64, eta: f64) -> (f64, f64) {
+/// The fraction of unpolarised light that is reflected, and the cosine of the refracted direction, by Fresnel's
+/// equations.
+pub(crate) fn fresnel(cosine: f64, eta: f64) -> (f64, f64) {
     let sine_squared = (1.0 - cosine * cosine) / (eta * eta);
     if sine_squared >= 1.0 {
         return (1.0, 0.0);

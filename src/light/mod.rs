@@ -185,6 +185,11 @@ impl Default for Sky {
 }
 
 impl SkyLight {
+    /// Whether an image of the sky gives light.
+    pub(crate) fn has_lit_image(&self) -> bool {
+        matches!(self, Self::Image { environment, strength, .. } if *strength > 0.0 && environment.has_light())
+    }
+
     /// The radiance from a direction, which must have unit length.
     #[must_use]
     pub fn radiance(&self, direction: DVec3) -> DVec3 {

@@ -96,14 +96,10 @@ impl SourceList {
             LightKind::Directional { angular_radius, .. } => *angular_radius == 0.0 || is_sampled,
             LightKind::Point { .. } | LightKind::Sphere { .. } => true,
         });
-        let image = match &settings.sky.light {
-            SkyLight::Image { environment, strength, .. } => environment.has_light() && *strength > 0.0,
-            _ => false,
-        };
         Self {
             lamps: lamps.map(|(_, index)| index).collect(),
             emitters: is_sampled && !emitters.ids().is_empty(),
-            image: is_sampled && image,
+            image: is_sampled && settings.sky.light.has_lit_image(),
         }
     }
 
@@ -232,13 +228,9 @@ pub(crate) fn emitter_records(emitters: &Emitters, emissive: &[EmissiveSphere]) 
 
 /// The image of a sky, as a device gets it.
 pub(crate) fn uploaded_sky(settings: &RenderSettings) -> Option<UploadedSky> {
-    match &settings.sky.light {
-        SkyLight::Image { environment, .. } => Some(UploadedSky {
-            texels: environment.texels().to_vec(),
-            shares: environment.rows().iter().chain(environment.columns()).copied().collect(),
-        }),
-        SkyLight::Constant(_) | SkyLight::Gradient { .. } => None,
-    }
+    let SkyLight::Image { environment, .. } = &settings.sky.light else { return None };
+    let shares = environment.rows().iter().chain(environment.columns()).copied().collect();
+    Some(UploadedSky { texels: environment.texels().to_vec(), shares })
 }
 
 /// The means of a pixel, its luminance, and the variance of its mean luminance.

@@ -1,5 +1,6 @@
 //! The appearance of a scene's spheres, apart from their geometry.
 
+use std::cmp::Ordering;
 use std::collections::HashMap;
 use std::ops::Deref;
 use std::sync::OnceLock;
@@ -120,16 +121,13 @@ impl Appearance {
     /// or a number is NaN (the error names the first such sphere), or if there are more colours or indices than
     /// spheres.
     pub fn check(&self, count: usize) -> Result<(), SceneError> {
-        let all = |what: &str, found| match found {
-            _ if found == count => Ok(()),
-            _ => Err(SceneError::Invalid(match found < count {
-                true => {
-                    format!("sphere {found} has no {what}: there are {found} for {count} spheres")
-                }
-                false => {
-                    format!("{what} {count} has no sphere: there are {found} for {count} spheres")
-                }
-            })),
+        let all = |what: &str, found: usize| {
+            let lack = match found.cmp(&count) {
+                Ordering::Equal => return Ok(()),
+                Ordering::Less => format!("sphere {found} has no {what}"),
+                Ordering::Greater => format!("{what} {count} has no sphere"),
+            };
+            Err(SceneError::Invalid(format!("{lack}: there are {found} for {count} spheres")))
         };
         match &self.colors {
             Colors::One(_) => {}
@@ -223,11 +221,6 @@ impl Deref for SceneAppearance {
 impl SceneAppearance {
     pub(crate) fn new(appearance: Appearance, count: usize) -> Self {
         Self { appearance, count, material_table: OnceLock::new(), is_opaque: OnceLock::new() }
-    }
-
-    /// The appearance without the derived data.
-    pub(super) fn into_inner(self) -> Appearance {
-        self.appearance
     }
 
     /// The number of spheres.

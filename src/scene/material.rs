@@ -91,7 +91,7 @@ impl SurfaceProperties {
     /// Returns an error if a parameter is out of range. The error names the first such parameter.
     pub fn check(&self) -> Result<(), RangeError> {
         let within = |parameter, value: f32, [low, high]: [f32; 2], range| {
-            RangeError::unless_within(parameter, value.into(), [low.into(), high.into()], range)
+            RangeError::unless_within(parameter, value.into(), [low.into(), high.into()], range).map(drop)
         };
         let rough = |value| within("roughness", value, [MIN_ROUGHNESS, 1.0], "from 0.02 to 1");
         within("opacity", self.opacity, [0.0, 1.0], "from 0 to 1")?;
@@ -100,9 +100,7 @@ impl SurfaceProperties {
                 within("specular", specular, [0.0, 1.0], "from 0 to 1")?;
                 rough(roughness)?;
             }
-            Material::Conductor { roughness } => {
-                rough(roughness)?;
-            }
+            Material::Conductor { roughness } => rough(roughness)?,
             Material::Dielectric { ior, roughness, attenuation_distance } => {
                 within("ior", ior, [1.0, 4.0], "from 1 to 4")?;
                 if roughness != 0.0 {
@@ -114,9 +112,7 @@ impl SurfaceProperties {
                     within("attenuation_distance", distance, [1e-16, 1e16], range)?;
                 }
             }
-            Material::Emissive { strength } => {
-                within("strength", strength, [0.0, 1e6], "from 0 to 1e6")?;
-            }
+            Material::Emissive { strength } => within("strength", strength, [0.0, 1e6], "from 0 to 1e6")?,
         }
         Ok(())
     }

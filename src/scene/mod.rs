@@ -147,7 +147,7 @@ impl Scene {
     /// The spheres, all with these surface properties.
     #[must_use]
     pub fn with_surface(mut self, surface: SurfaceProperties) -> Self {
-        let appearance = Arc::unwrap_or_clone(self.appearance).into_inner().with_surface(surface);
+        let appearance = Arc::unwrap_or_clone(self.appearance).appearance.with_surface(surface);
         self.appearance = Arc::new(SceneAppearance::new(appearance, self.spheres.len()));
         self
     }

@@ -219,7 +219,13 @@ impl PixelCheck<'_> {
             }
             None => ShadingRay::from(camera_ray.any(&self.model)),
         };
-        let normal = self.check_hit(&layers, depths, id, &shading)?;
+        if layers.id != id {
+            return Err(wrong_id(layers.id, id));
+        }
+        if !depths.contains(layers.depth.into()) {
+            return Err(Mismatch::value("depth", layers.depth, depths));
+        }
+        let normal = self.check_shading(&layers, &shading)?;
         if let Some(measured) = measured.filter(|_| verdict == Verdict::Decided) {
             for (what, found, legal) in entered.numbers(&ray) {
                 measured.measure("camera", what, found, legal);
@@ -252,17 +258,6 @@ impl PixelCheck<'_> {
         }
         let background = self.recording.primary.background.to_array();
         check_color(layers.color, background.map(exactly))
-    }
-
-    /// Judges the layers of a hit. Returns the deviation of the normal from the exact normal, relative to its bound.
-    fn check_hit(&self, layers: &Layers, depths: Interval, id: u32, shading: &ShadingRay) -> Result<f64, Mismatch> {
-        if layers.id != id {
-            return Err(wrong_id(layers.id, id));
-        }
-        if !depths.contains(layers.depth.into()) {
-            return Err(Mismatch::value("depth", layers.depth, depths));
-        }
-        self.check_shading(layers, shading)
     }
 
     /// Judges normal and colour of a hit. Returns the deviation of the normal from the exact

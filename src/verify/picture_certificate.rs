@@ -19,6 +19,7 @@
 //! compute digests. So `verify` takes nothing else from the certificate than what the picture should be, and judges every
 //! pixel itself. The adapter and the version are hearsay.
 
+use bytemuck::{bytes_of, cast_slice};
 use sha2::{Digest, Sha256};
 
 use super::run_file::hex;
@@ -37,9 +38,6 @@ const COUNTS: [&str; 4] = ["exact", "legal", "wide", "open"];
 
 /// The last key.
 const DIGEST: &str = "sha256";
-
-/// The number of bytes that are given to a digest at a time.
-const CHUNK: usize = 1 << 16;
 
 /// The certificate that a picture carries in its file.
 #[derive(Clone, Debug, PartialEq, Eq)]
@@ -174,29 +172,15 @@ fn unescaped(text: &str) -> String {
 #[must_use]
 pub fn scene_digest(scene: &Scene) -> String {
     let mut digest = Sha256::new();
-    let mut bytes = Vec::with_capacity(CHUNK + 64);
-    let mut add = |digest: &mut Sha256, part: &[u8]| {
-        bytes.extend_from_slice(part);
-        if bytes.len() >= CHUNK || part.is_empty() {
-            digest.update(&bytes);
-            bytes.clear();
-        }
-    };
-    for number in scene.origin().to_array() {
-        add(&mut digest, &number.to_le_bytes());
-    }
+    // Numbers have the lowest byte first in memory too, as run files need (`run_file/container.rs`).
+    digest.update(bytes_of(&scene.origin().to_array()));
     for (id, sphere) in (0..).zip(scene.spheres()) {
-        let color = scene.color(id).to_array();
-        for number in sphere.iter().chain(&color) {
-            add(&mut digest, &number.to_le_bytes());
-        }
+        digest.update(bytes_of(sphere));
+        digest.update(bytes_of(&scene.color(id).to_array()));
     }
     let appearance = scene.appearance();
-    add(&mut digest, format!("{:?}", appearance.surfaces()).as_bytes());
-    for index in appearance.surface_indices().into_iter().flatten() {
-        add(&mut digest, &index.to_le_bytes());
-    }
-    add(&mut digest, &[]);
+    digest.update(format!("{:?}", appearance.surfaces()));
+    digest.update(cast_slice::<u32, u8>(appearance.surface_indices().unwrap_or_default()));
     hex(digest)
 }
 

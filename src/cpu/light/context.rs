@@ -80,9 +80,8 @@ impl<'a> LightingContext<'a> {
             })
         });
         let sky_image = match &settings.sky.light {
-            SkyLight::Image { environment, strength, rotation } if *strength > 0.0 && environment.has_light() => {
-                let rotation = Environment::rotation(*rotation);
-                Some(SkyImage { environment, rotation })
+            light @ SkyLight::Image { environment, rotation, .. } if light.has_lit_image() => {
+                Some(SkyImage { environment, rotation: Environment::rotation(*rotation) })
             }
             _ => None,
         };
@@ -174,29 +173,25 @@ impl LightingContext<'_> {
         let sources = &self.sources;
         let last = sources.sampled.len().checked_sub(1)?;
         let index = ((fraction(choice[0]) * sources.count()) as usize).min(last);
+        let at_infinity = |direction, radiance, density| {
+            let light = SampledLight::Radiance(radiance, density);
+            Some(LightSample { direction, distance: f64::INFINITY, sphere: None, light })
+        };
         match sources.sampled[index] {
             Source::Lamp(lamp) => {
                 let Arrival { direction, strength, distance } = arrival(&lamp, point, u)?;
                 let light = SampledLight::Lamp(strength * sources.count());
                 Some(LightSample { direction, distance, sphere: None, light })
             }
-            Source::Sun(sun) => Some(LightSample {
-                direction: TangentFrame::around(sun.toward).to_scene(cone(u, sun.k)),
-                distance: f64::INFINITY,
-                sphere: None,
-                light: SampledLight::Radiance(sun.radiance, sources.density_at_sun(sun.k)),
-            }),
+            Source::Sun(sun) => {
+                let direction = TangentFrame::around(sun.toward).to_scene(cone(u, sun.k));
+                at_infinity(direction, sun.radiance, sources.density_at_sun(sun.k))
+            }
             Source::Emitters => self.sample_emitter(point, choice[1], u),
             Source::Sky => {
                 let image = self.sky_image?;
                 let (direction, density) = image.environment.sample(u, image.rotation);
-                let radiance = self.settings.sky.light.radiance(direction);
-                Some(LightSample {
-                    direction,
-                    distance: f64::INFINITY,
-                    sphere: None,
-                    light: SampledLight::Radiance(radiance, density / sources.count()),
-                })
+                at_infinity(direction, self.settings.sky.light.radiance(direction), density / sources.count())
             }
         }
     }

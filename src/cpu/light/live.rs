@@ -74,11 +74,11 @@ impl LiveReference {
         }
         let studio = studio.clone();
         let context = LightingContext::new(search, view.camera, &settings);
-        let light = LiveLight { context, studio: &studio, view: *view, number: self.count };
         let [width, height] = [view.film.width(), view.film.height()];
         let pixels = (0..height).flat_map(|row| (0..width).map(move |column| [column, row]));
-        let found: Vec<LivePixel> = pixels.clone().map(|pixel| light.pixel(pixel)).collect();
-        let has_moved = self.before.as_ref().is_some_and(|before| before.lights != light.context.lights);
+        let found: Vec<LivePixel> =
+            pixels.clone().map(|pixel| lit(&context, &studio, view, self.count, pixel)).collect();
+        let has_moved = self.before.as_ref().is_some_and(|before| before.lights != context.lights);
         let most = [if has_moved { MOST_MOVING } else { MOST }, MOST];
         let origin = search.scene().origin();
         let with_history = |(pixel, seen): ([u32; 2], &LivePixel)| {
@@ -105,7 +105,7 @@ impl LiveReference {
             frame.id.push(seen.id);
         }
         let (kind, vectors) = (view.camera.kind(), view.camera.vectors());
-        self.before = Some(Before { kind, vectors, lights: light.context.lights });
+        self.before = Some(Before { kind, vectors, lights: context.lights });
         self.known = known;
         self.count += 1;
         Some(frame)
@@ -119,8 +119,7 @@ impl LiveReference {
         let (place, distance) = if before.vectors == now {
             (pixel.map(|number| f64::from(number) + 0.5), seen.depth)
         } else {
-            let is_linear = [CameraKind::Pinhole, CameraKind::ThinLens, CameraKind::Orthographic];
-            if before.kind != view.camera.kind() || !is_linear.contains(&before.kind) {
+            if before.kind != view.camera.kind() || !before.kind.is_linear() {
                 return None;
             }
             let CameraVectors { origin, right, up, forward, .. } = before.vectors;
@@ -210,50 +209,37 @@ struct LivePixel {
     id: u32,
 }
 
-/// Lights the surfaces of a frame.
-struct LiveLight<'a> {
-    context: LightingContext<'a>,
-    studio: &'a Studio,
-    view: View<'a>,
-    /// The number of the frame, which determines the random numbers.
-    number: u32,
-}
-
-impl LiveLight<'_> {
-    fn pixel(&self, pixel: [u32; 2]) -> LivePixel {
-        let Self { context, studio, view, number } = self;
-        let is_transparent = context.settings.is_transparent;
-        let behind = if is_transparent { DVec3::ZERO } else { context.background() };
-        let steady = Shade { color: behind, alpha: 0.0 };
-        let nothing = LivePixel {
-            steady,
-            lamps: Shade::default(),
-            ambient: Shade::default(),
-            shares: [1.0; 2],
-            normal: DVec3::ZERO,
-            depth: f64::INFINITY,
-            id: NO_ID,
-        };
-        let Some(ray) = view.ray_through_center(pixel) else { return nothing };
-        let ray = Ray { origin: ray.origin - context.scene.origin(), ..ray };
-        let Some(interaction) = nearest(context, &SurfaceRay { ray, start: Start::Free }) else {
-            return nothing;
-        };
-        let address = Address::new(pixel, *number, context.settings.sampling.seed);
-        let direction = ray.direction;
-        let seen = VisibleSurface { context, studio, interaction, direction, address, m: 0 };
-        let id = match interaction.surface {
-            Surface::Sphere(id) => id,
-            Surface::Ground => NO_ID,
-        };
-        let Interaction { normal, distance: depth, .. } = interaction;
-        let found = LivePixel { normal, depth, id, ..nothing };
-        match context.ground {
-            Some(plane) if plane.is_shadow_catcher && interaction.surface == Surface::Ground => {
-                seen.caught(found, behind)
-            }
-            _ => seen.shaded(found),
-        }
+/// Lights the surface that a pixel shows. The number of the frame determines the random numbers.
+fn lit(context: &LightingContext<'_>, studio: &Studio, view: &View<'_>, number: u32, pixel: [u32; 2]) -> LivePixel {
+    let is_transparent = context.settings.is_transparent;
+    let behind = if is_transparent { DVec3::ZERO } else { context.background() };
+    let steady = Shade { color: behind, alpha: 0.0 };
+    let nothing = LivePixel {
+        steady,
+        lamps: Shade::default(),
+        ambient: Shade::default(),
+        shares: [1.0; 2],
+        normal: DVec3::ZERO,
+        depth: f64::INFINITY,
+        id: NO_ID,
+    };
+    let Some(ray) = view.ray_through_center(pixel) else { return nothing };
+    let ray = Ray { origin: ray.origin - context.scene.origin(), ..ray };
+    let Some(interaction) = nearest(context, &SurfaceRay { ray, start: Start::Free }) else {
+        return nothing;
+    };
+    let address = Address::new(pixel, number, context.settings.sampling.seed);
+    let direction = ray.direction;
+    let seen = VisibleSurface { context, studio, interaction, direction, address, m: 0 };
+    let id = match interaction.surface {
+        Surface::Sphere(id) => id,
+        Surface::Ground => NO_ID,
+    };
+    let Interaction { normal, distance: depth, .. } = interaction;
+    let found = LivePixel { normal, depth, id, ..nothing };
+    match context.ground {
+        Some(plane) if plane.is_shadow_catcher && interaction.surface == Surface::Ground => seen.caught(found, behind),
+        _ => seen.shaded(found),
     }
 }
 

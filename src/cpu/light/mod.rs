@@ -3,8 +3,6 @@
 //! The kernels compute the same quantities from the same random numbers, so that pictures can be compared sample by
 //! sample. The reference shares only its input with the kernels.
 
-use std::ops::Range;
-
 use glam::{DVec2, DVec3};
 
 use self::context::LightingContext;
@@ -146,8 +144,9 @@ impl<'a> SampledPicture<'a> {
         let none = Progress { samples: 0, total, part: 0.0, noise: None };
         let height = image.height() as usize;
         Pace::new().run(height.div_ceil(STRIP), |strips| {
-            for_rows(image, rows_of(&strips, height), |pixel, i, row| {
-                row.set(i, &self.data(pixel));
+            let rows = strips.start * STRIP..height.min(strips.end * STRIP);
+            for_rows(image, rows, |pixel, i, row| {
+                row.set(i, &primary_pixel(self.context.search, &self.view, &PrimarySettings::default(), pixel));
             });
             match watch(&none) {
                 Decision::Stop => Err(RenderError::Stopped),
@@ -202,16 +201,6 @@ impl<'a> SampledPicture<'a> {
         }
         Ok(())
     }
-
-    /// The data layers of a pixel, from the ray through its centre.
-    fn data(&self, pixel: [u32; 2]) -> Pixel {
-        primary_pixel(self.context.search, &self.view, &PrimarySettings::default(), pixel)
-    }
-}
-
-/// The rows of some strips.
-fn rows_of(strips: &Range<usize>, height: usize) -> Range<usize> {
-    strips.start * STRIP..height.min(strips.end * STRIP)
 }
 
 /// Completes a picture that was rendered with [`RenderSettings::unfinished`] and has the layers

@@ -59,12 +59,6 @@ pub(super) struct PixelSums {
     square: f64,
 }
 
-/// The means over the samples of a pixel, before conversion to f32.
-struct Means {
-    averages: Averages,
-    totals: Totals,
-}
-
 impl PixelSums {
     fn add(&mut self, found: &Sample) {
         let luminance = luminance(found.color);
@@ -75,8 +69,8 @@ impl PixelSums {
         self.square += luminance * luminance;
     }
 
-    /// The means over `count` samples.
-    fn means(&self, count: u32) -> Means {
+    /// The means over `count` samples, and in f64 what is added up over all pixels.
+    fn means(&self, count: u32) -> (Averages, Totals) {
         let Self { color, albedo, alpha, light, square } = *self;
         let n = f64::from(count);
         let spread = (square / n - (light / n).powi(2)).max(0.0);
@@ -88,7 +82,7 @@ impl PixelSums {
             samples: count,
             variance: variance as f32,
         };
-        Means { averages, totals: Totals { opacity: alpha, variance, light: light / n, pixels: 1 } }
+        (averages, Totals { opacity: alpha, variance, light: light / n, pixels: 1 })
     }
 }
 
@@ -170,7 +164,7 @@ impl FilmSums {
             let rows = strip * STRIP..height.min((strip + 1) * STRIP);
             let mut totals = Totals::default();
             for sums in &self.sums[rows.start * width..rows.end * width] {
-                totals.add(&sums.means(self.samples[strip]).totals);
+                totals.add(&sums.means(self.samples[strip]).1);
             }
             totals
         };
@@ -189,7 +183,7 @@ impl FilmSums {
                     let tile = x - x % STRIP;
                     let inside = y * STRIP.min(width - tile) + x % STRIP;
                     let sums = &self.sums[top * width + tile * rows + inside];
-                    row.set_averages(x, &sums.means(*samples).averages);
+                    row.set_averages(x, &sums.means(*samples).0);
                 }
             }
         }

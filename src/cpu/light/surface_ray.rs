@@ -74,8 +74,8 @@ pub(super) enum Occluders {
 /// The nearest interaction. At equal distances, spheres win over the ground, and smaller ids over larger ones.
 pub(super) fn nearest(context: &LightingContext<'_>, surface_ray: &SurfaceRay) -> Option<Interaction> {
     let ray = &surface_ray.ray;
-    let start = StartSphere::of(context, surface_ray.start);
-    let distance = |sphere| hit_of(ray, start, sphere).map(|hit| hit.distance);
+    let (start, own) = (surface_ray.start, start_sphere(context, surface_ray.start));
+    let distance = |sphere| hit_of(ray, start, own, sphere).map(|hit| hit.distance);
     let nearest = context.search.nearest(ray, distance);
     let is_nearest = |t: &f64| nearest.is_none_or(|nearest| *t < nearest.t);
     if let Some(distance) = ground(context, surface_ray).filter(is_nearest) {
@@ -90,7 +90,7 @@ pub(super) fn nearest(context: &LightingContext<'_>, surface_ray: &SurfaceRay) -
         });
     }
     let NearestHit { id, sphere, .. } = nearest?;
-    let SphereHit { distance, outward, is_outside } = hit_of(ray, start, sphere)?;
+    let SphereHit { distance, outward, is_outside } = hit_of(ray, start, own, sphere)?;
     let (center, radius) = context.sphere(id);
     Some(Interaction {
         surface: Surface::Sphere(id),
@@ -110,20 +110,20 @@ pub(super) fn is_occluded(
     exempt: Option<u32>,
 ) -> bool {
     let ray = &surface_ray.ray;
-    let start = StartSphere::of(context, surface_ray.start);
+    let (start, own) = (surface_ray.start, start_sphere(context, surface_ray.start));
     let hides = |id: u32| match occluders {
         Occluders::All => true,
         Occluders::Opaque => context.scene.surface(id).opacity >= 1.0,
     };
     // If several spheres equal the one on which the ray starts, only that one counts.
-    let is_there = |id: u32, sphere| match surface_ray.start {
-        Start::Inside(own) => id == own || !start.is_same(sphere),
+    let is_there = |id: u32, sphere| match start {
+        Start::Inside(first) => id == first || !own.is_some_and(|own| is_same(own, sphere)),
         Start::Free | Start::Outside(_) | Start::Ground => true,
     };
     let exempt = exempt.map(|id| context.scene.spheres()[id as usize]);
     ground(context, surface_ray).is_some_and(|t| t < t_max)
         || context.search.any(ray, t_max, |id, sphere| {
-            hit_of(ray, start, sphere).is_some_and(|hit| hit.distance < t_max)
+            hit_of(ray, start, own, sphere).is_some_and(|hit| hit.distance < t_max)
                 && !exempt.is_some_and(|own| is_same(own, sphere))
                 && is_there(id, sphere)
                 && hides(id)
@@ -136,28 +136,10 @@ fn is_same(one: [f32; 4], other: [f32; 4]) -> bool {
 }
 
 /// The sphere on which a ray starts.
-#[derive(Clone, Copy)]
-enum StartSphere {
-    None,
-    /// The ray starts outwards on this sphere.
-    Outside([f32; 4]),
-    /// The ray starts inwards on this sphere.
-    Inside([f32; 4]),
-}
-
-impl StartSphere {
-    fn of(context: &LightingContext<'_>, start: Start) -> Self {
-        let sphere = |id: u32| context.scene.spheres()[id as usize];
-        match start {
-            Start::Free | Start::Ground => Self::None,
-            Start::Outside(id) => Self::Outside(sphere(id)),
-            Start::Inside(id) => Self::Inside(sphere(id)),
-        }
-    }
-
-    /// Whether the ray starts on a sphere with this centre and radius.
-    fn is_same(self, sphere: [f32; 4]) -> bool {
-        matches!(self, Self::Outside(own) | Self::Inside(own) if is_same(own, sphere))
+fn start_sphere(context: &LightingContext<'_>, start: Start) -> Option<[f32; 4]> {
+    match start {
+        Start::Free | Start::Ground => None,
+        Start::Outside(id) | Start::Inside(id) => Some(context.scene.spheres()[id as usize]),
     }
 }
 
@@ -172,15 +154,16 @@ struct SphereHit {
     is_outside: bool,
 }
 
-/// Inlined, so that callers that need only the distance do not compute the rest.
+/// The hit of a ray that starts on the sphere `own`. Inlined, so that callers that need only the distance do not compute the rest.
 #[inline(always)]
-fn hit_of(ray: &Ray, start: StartSphere, sphere: [f32; 4]) -> Option<SphereHit> {
+fn hit_of(ray: &Ray, start: Start, own: Option<[f32; 4]>, sphere: [f32; 4]) -> Option<SphereHit> {
     let [x, y, z, radius] = sphere.map(f64::from);
     let center = DVec3::new(x, y, z);
     let from_center = ray.origin - center;
+    let is_own = own.is_some_and(|own| is_same(own, sphere));
     match start {
-        StartSphere::Outside(own) if is_same(own, sphere) => None,
-        StartSphere::Inside(own) if is_same(own, sphere) => {
+        Start::Outside(_) if is_own => None,
+        Start::Inside(_) if is_own => {
             let distance = (-2.0 * from_center.dot(ray.direction)).max(0.0);
             let outward = (from_center + distance * ray.direction).normalize_or(DVec3::Z);
             Some(SphereHit { distance, outward, is_outside: false })

@@ -35,9 +35,7 @@ impl<'a> LitCheck<'a> {
             brightest: None,
         }
     }
-}
 
-impl LitCheck<'_> {
     /// A kernel that reads the state of a ray. As yet it has no hit and changes nothing.
     pub(crate) fn kernel<'b>(&'b self, address: Address, state: &'b RayState, choices: &'b mut Choices) -> Kernel<'b> {
         Kernel {

@@ -128,9 +128,7 @@ impl<'a> Kernel<'a> {
     pub(crate) fn table_numbers(&self, at: u32) -> [f32; 4] {
         self.table(at).map(f32::from_bits)
     }
-}
 
-impl<'a> Kernel<'a> {
     /// Three recorded numbers of a slot of the result, if it was recorded.
     pub(crate) fn recorded(&self, slot: usize) -> Option<Vector> {
         match self.after {
@@ -179,6 +177,12 @@ impl<'a> Kernel<'a> {
                 Ok(())
             }
         }
+    }
+
+    /// Checks that slots have not changed. If the result was not recorded, it began as the state before.
+    pub(crate) fn same(&mut self, name: Name, slots: &[usize]) -> Result<(), Mismatch> {
+        let Output::Recorded(after) = self.after else { return Ok(()) };
+        slots.iter().try_for_each(|slot| self.judge.same(name, [&self.before.raw, after], *slot))
     }
 }
 
@@ -260,10 +264,7 @@ impl Kernel<'_> {
     /// Writes the point, and returns it. If it was recorded, it is exact from then on.
     fn at(&mut self, position: Vector, size: f64) -> Result<Vector, Mismatch> {
         self.write(POSITION, slot::ORIGIN, position, size)?;
-        match self.after {
-            Output::Recorded(after) => Ok(Vector::recorded(after.vector(slot::ORIGIN))),
-            Output::Legal(_) => Ok(position.fence()),
-        }
+        Ok(self.recorded(slot::ORIGIN).unwrap_or_else(|| position.fence()))
     }
 
     fn ground_vertex(&mut self, origin: Vector, direction: Vector, distance: Number) -> Result<Vertex, Mismatch> {
@@ -329,9 +330,7 @@ impl Kernel<'_> {
         let sphere = [x, y, z, radius];
         Ok(Vertex { position, normal, is_back, distance, sphere, color, material_index, opacities })
     }
-}
 
-impl Kernel<'_> {
     /// The normal, narrowed by means of the point on the sphere that was computed from it.
     fn normal_by_point(
         &mut self,

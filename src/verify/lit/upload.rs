@@ -12,7 +12,7 @@ use crate::light::environment::Environment;
 use crate::light::{LightKind, SkyLight, codes};
 use crate::recording::lit::{LitInputs, UploadedLighting, flag};
 use crate::recording::{NO_HIT, UploadError};
-use crate::render::{DepthCue, Integrator, LightSampling, Occlusion, PathTracing, RenderSettings, Studio};
+use crate::render::{DepthCue, Integrator, LightSampling, Occlusion, PathTracing, Studio};
 use crate::scene::Scene;
 use crate::scene::material::{Material, SurfaceProperties};
 use crate::verify::hit::Candidates;
@@ -50,9 +50,7 @@ fn is_point(found: [f32; 3], asked: DVec3, scene: &Scene) -> bool {
 fn check_lighting(scene: &Scene, inputs: &LitInputs) -> Result<(), UploadError> {
     let LitInputs { settings, lighting, .. } = inputs;
     match &settings.integrator {
-        Integrator::Primary(_) => {
-            return Err(wrong("the integrator"));
-        }
+        Integrator::Primary(_) => return Err(wrong("the integrator")),
         Integrator::Path(path) => check_path(path, inputs)?,
         Integrator::Studio(studio) => {
             check_studio(studio, scene, inputs)?;
@@ -78,7 +76,7 @@ fn check_lighting(scene: &Scene, inputs: &LitInputs) -> Result<(), UploadError> 
         ("the seed", lighting.seed == settings.sampling.seed),
         ("the ground", is_ground),
         ("the pixel filter", lighting.filter_table[..] == filter[..]),
-        ("the sky", is_sky(settings, lighting, inputs)),
+        ("the sky", is_sky(inputs)),
     ];
     first_wrong(&all)
 }
@@ -92,7 +90,7 @@ fn first_wrong(all: &[(&'static str, bool)]) -> Result<(), UploadError> {
 }
 
 fn check_path(path: &PathTracing, inputs: &LitInputs) -> Result<(), UploadError> {
-    let LitInputs { lighting, .. } = inputs;
+    let lighting = &inputs.lighting;
     first_wrong(&[
         ("the start of roulette", lighting.roulette_from == path.roulette_from),
         ("how lights are sampled", lighting.light_sampling == path.light_sampling.code()),
@@ -141,23 +139,20 @@ fn check_occluders(scene: &Scene, inputs: &LitInputs) -> Result<(), UploadError>
     )])
 }
 
-fn is_sky(settings: &RenderSettings, lighting: &UploadedLighting, inputs: &LitInputs) -> bool {
+fn is_sky(LitInputs { settings, lighting, sky, .. }: &LitInputs) -> bool {
     let ends = [lighting.zenith, lighting.horizon, lighting.nadir];
     let are = |colors: [[f32; 3]; 3]| ends.into_iter().zip(colors).all(|(a, b)| are_near(a, b.map(f64::from)));
     match &settings.sky.light {
-        SkyLight::Constant(radiance) => inputs.sky.is_none() && are([radiance.to_array(); 3]),
+        SkyLight::Constant(radiance) => sky.is_none() && are([radiance.to_array(); 3]),
         SkyLight::Gradient { zenith, horizon, nadir } => {
-            inputs.sky.is_none() && are([zenith, horizon, nadir].map(|end| end.to_array()))
+            sky.is_none() && are([zenith, horizon, nadir].map(|end| end.to_array()))
         }
         SkyLight::Image { environment, strength, rotation } => {
             let shares = environment.rows().iter().chain(environment.columns());
             lighting.environment_size == [environment.width(), environment.height()]
                 && are_near(lighting.environment_rotation, Environment::rotation(*rotation).map(f64::from))
                 && is_near(lighting.environment_strength, (*strength).into())
-                && inputs
-                    .sky
-                    .as_ref()
-                    .is_some_and(|sky| sky.texels == environment.texels() && sky.shares.iter().eq(shares))
+                && sky.as_ref().is_some_and(|sky| sky.texels == environment.texels() && sky.shares.iter().eq(shares))
         }
     }
 }
@@ -187,26 +182,15 @@ fn check_tables(scene: &Scene, inputs: &LitInputs) -> Result<(), UploadError> {
     let lamps = check_lights(&tables, scene, inputs)?;
     let emitters = check_emitters(scene, inputs)?;
     check_materials(&tables, scene)?;
-    let is_image = match &inputs.settings.sky.light {
-        SkyLight::Image { environment, strength, .. } => {
-            environment.has_light() && *strength > 0.0 && uses_light_sampling(inputs)
-        }
-        SkyLight::Constant(_) | SkyLight::Gradient { .. } => false,
-    };
+    let is_image = uses_light_sampling(inputs) && inputs.settings.sky.light.has_lit_image();
     let sources = lamps + u32::from(emitters > 0) + u32::from(is_image);
     let UploadedLighting { source_count, lamp_sources, emitter_count, .. } = inputs.lighting;
-    if [source_count, lamp_sources, emitter_count] == [sources, lamps, emitters] {
-        Ok(())
-    } else {
-        Err(wrong("the number of light sources"))
-    }
+    let is_count = [source_count, lamp_sources, emitter_count] == [sources, lamps, emitters];
+    first_wrong(&[("the number of light sources", is_count)])
 }
 
 fn uses_light_sampling(inputs: &LitInputs) -> bool {
-    match &inputs.settings.integrator {
-        Integrator::Path(path) => path.light_sampling != LightSampling::Chance,
-        Integrator::Primary(_) | Integrator::Studio(_) => false,
-    }
+    matches!(&inputs.settings.integrator, Integrator::Path(path) if path.light_sampling != LightSampling::Chance)
 }
 
 /// Checks the table of lights, and returns the number of lights among which light sampling chooses.
@@ -247,10 +231,7 @@ fn check_lights(tables: &Tables<'_>, scene: &Scene, inputs: &LitInputs) -> Resul
             return Err(wrong_entry("light", index as usize));
         }
     }
-    if tables.lighting.light_count != count {
-        return Err(wrong("the number of lights"));
-    }
-    Ok(lamps)
+    first_wrong(&[("the number of lights", tables.lighting.light_count == count)]).map(|()| lamps)
 }
 
 /// Checks the table of emissive spheres, and returns the number of spheres among which light sampling chooses.

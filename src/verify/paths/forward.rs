@@ -103,9 +103,7 @@ impl LitCheck<'_> {
         let lifted = [0, 1, 2].map(|channel| most[channel] * carried / through[channel].max(f64::MIN_POSITIVE));
         Vector(lifted.map(|c| Number::known(c.min(ANY_LIGHT))))
     }
-}
 
-impl LitCheck<'_> {
     /// The most light that can arrive at the end of a path, and at each surface before it, if everything is matt and
     /// nothing reflects more than arrives. `None` if there is no such bound.
     pub(crate) fn most_light_of_paths(&self) -> Option<[[f64; 3]; 2]> {

@@ -33,6 +33,7 @@ const PENDING: Name = (LitStage::Light, "the pending light");
 const LIGHT: Name = (LitStage::Light, "the sampled light");
 const MEDIUM: Name = (LitStage::Scatter, "the absorption along the next ray");
 const FIRST: Name = (LitStage::Vertex, "the first surface's color");
+pub(crate) const KEPT: Name = (LitStage::Scatter, "an unchanged part of the path's state");
 
 impl Kernel<'_> {
     pub(crate) fn pair(&self, number: u32) -> [u32; 2] {
@@ -66,7 +67,7 @@ impl Kernel<'_> {
             self.write(FIRST, slot::FIRST, first, 0.0)?;
             self.write_number(FIRST, [slot::FIRST, 3], Number::known(-1.0), 0.0)?;
         } else {
-            self.same(&[slot::FIRST])?;
+            self.same(KEPT, &[slot::FIRST])?;
         }
         let material = self.material_of(&vertex);
         if material.kind == EMISSIVE {
@@ -118,17 +119,6 @@ impl Kernel<'_> {
         self.write_number(EXIT_DISTANCE, [slot::DEPARTURE, 2], exit_distance, 0.0)
     }
 
-    pub(crate) fn same(&mut self, slots: &[usize]) -> Result<(), Mismatch> {
-        const KEPT: Name = (LitStage::Scatter, "an unchanged part of the path's state");
-        match self.after {
-            Output::Recorded(after) => {
-                let states = [&self.before.raw, after];
-                slots.iter().try_for_each(|slot| self.judge.same(KEPT, states, *slot))
-            }
-            Output::Legal(_) => Ok(()),
-        }
-    }
-
     fn write_radiance(&mut self, radiance: Vector, alpha: Number) -> Result<(), Mismatch> {
         self.write(RADIANCE, slot::RADIANCE, radiance, 0.0)?;
         self.write_number(ALPHA, [slot::RADIANCE, 3], alpha, 0.0)
@@ -152,8 +142,7 @@ impl Kernel<'_> {
         self.write(ORIGIN, slot::ORIGIN, Vector::ZERO, 0.0)?;
         self.write_bits(FLAGS, [slot::ORIGIN, 3], 0)?;
         self.write_no_light()?;
-        self.same(&[slot::DIRECTION, slot::DEPARTURE, slot::THROUGHPUT, slot::FIRST])?;
-        self.same(&[slot::MEDIUM])
+        self.same(KEPT, &[slot::DIRECTION, slot::DEPARTURE, slot::THROUGHPUT, slot::FIRST, slot::MEDIUM])
     }
 
     /// Judges a path that ends on a surface. The next ray does not matter then.
@@ -170,12 +159,12 @@ impl Kernel<'_> {
     fn pass(&mut self, at: &Vertex, radiance_so_far: Vector, arriving: Vector) -> Result<(), Mismatch> {
         let before = self.before;
         self.write_radiance(radiance_so_far, before.number(slot::RADIANCE))?;
-        self.same(&[slot::FIRST])?;
+        self.same(KEPT, &[slot::FIRST])?;
         // Glass ends at its far side, even if the path passes through that side.
         if at.is_back && self.material_of(at).kind == DIELECTRIC {
             self.write(MEDIUM, slot::MEDIUM, Vector::ZERO, 0.0)?;
         } else {
-            self.same(&[slot::MEDIUM])?;
+            self.same(KEPT, &[slot::MEDIUM])?;
         }
         self.write_no_light()?;
         self.write(DIRECTION, slot::DIRECTION, before.vector(slot::DIRECTION), 0.0)?;

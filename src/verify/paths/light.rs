@@ -12,7 +12,7 @@ use crate::verify::lit::judge::{Mismatch, Name};
 use crate::verify::lit::kernel::{Kernel, unit};
 use crate::verify::lit::sampling::{Lamp, axes_around, cone_direction, cone_of_sphere, pi};
 use crate::verify::number::{Number, Vector, atan2_turns, sin_cos_turns};
-use crate::verify::paths::kernel::Surface;
+use crate::verify::paths::kernel::{KEPT, Surface};
 
 /// A sample of a light source, seen from a surface.
 struct LightSample {
@@ -62,7 +62,7 @@ impl Kernel<'_> {
         let lighting = self.lighting();
         if lighting.source_count == 0 {
             self.write_bits(EMITTER, [slot::DEPARTURE, 3], NO_EMITTER)?;
-            return self.same(&[slot::SHADOW, slot::PENDING]);
+            return self.same(KEPT, &[slot::SHADOW, slot::PENDING]);
         }
         let (u, [which, choice]) = (self.pair(4), self.pair(5));
         let scaled = unit(which) * Number::known(lighting.source_count.into());

@@ -281,30 +281,19 @@ pub(super) trait Number: Pod + Send + Sync {
     const DTYPE: Dtype;
 }
 
-impl Number for f32 {
-    const DTYPE: Dtype = Dtype::F32;
-}
-
-impl Number for f64 {
-    const DTYPE: Dtype = Dtype::F64;
-}
-
-impl Number for u32 {
-    const DTYPE: Dtype = Dtype::U32;
-}
-
-impl Number for u8 {
-    const DTYPE: Dtype = Dtype::U8;
-}
-
 /// A byte that should be a truth value, 0 or 1.
 #[derive(Clone, Copy, Pod, Zeroable)]
 #[repr(transparent)]
 pub(super) struct Flag(pub(super) u8);
 
-impl Number for Flag {
-    const DTYPE: Dtype = Dtype::BOOL;
+macro_rules! numbers {
+    ($($number:ty: $name:ident),+) => {
+        $(impl Number for $number {
+            const DTYPE: Dtype = Dtype::$name;
+        })+
+    };
 }
+numbers!(f32: F32, f64: F64, u32: U32, u8: U8, Flag: BOOL);
 
 /// A function that takes bytes piece by piece.
 pub(super) type Sink<'a> = dyn FnMut(&[u8]) -> io::Result<()> + 'a;

@@ -113,12 +113,12 @@ fn rendered(file: &Container<'_>, film: &Film) -> Result<PlainRender, RunFileErr
 }
 
 fn film(file: &Container<'_>) -> Result<Film, RunFileError> {
-    Ok(film_of(file, "color", "the picture")?.with_y_axis(named(
-        file,
-        "y_axis",
-        &[YAxis::Up, YAxis::Down],
-        YAxis::name,
-    )?))
+    let [height, width, _] = *file.shape("color")? else {
+        return Err(contradiction("the array `color` does not have the shape (H, W, 3)"));
+    };
+    let side = |side: usize| u32::try_from(side).unwrap_or(u32::MAX);
+    let film = Film::new(side(width), side(height)).map_err(|error| contradiction(format!("the picture: {error}")))?;
+    Ok(film.with_y_axis(named(file, "y_axis", &[YAxis::Up, YAxis::Down], YAxis::name)?))
 }
 
 fn camera(file: &Container<'_>) -> Result<RequestedCamera, RunFileError> {
@@ -181,15 +181,6 @@ fn named<T: Copy>(file: &Container<'_>, key: &str, all: &[T], name: fn(T) -> &'s
         .copied()
         .find(|one| name(*one) == text)
         .ok_or_else(|| contradiction(format!("there is no {key} `{}`", shortened(text))))
-}
-
-/// The film of a picture of three channels. `what` is the name of the picture in errors.
-fn film_of(file: &Container<'_>, name: &str, what: &str) -> Result<Film, RunFileError> {
-    let [height, width, _] = *file.shape(name)? else {
-        return Err(contradiction(format!("the array `{name}` does not have the shape (H, W, 3)")));
-    };
-    let side = |side: usize| u32::try_from(side).unwrap_or(u32::MAX);
-    Film::new(side(width), side(height)).map_err(|error| contradiction(format!("{what}: {error}")))
 }
 
 /// The inverse of [`SurfaceProperties::bits`]; `None` if there is no such kind.

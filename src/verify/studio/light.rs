@@ -158,10 +158,9 @@ impl Kernel<'_> {
     /// The change of radiance and opacity if the ground lacks a share of all light.
     fn caught(&self, share: Number) -> Change {
         let lighting = self.lighting();
-        let alpha = self.before.number(slot::ALBEDO) * share;
-        if lighting.flags & flag::TRANSPARENT != 0 {
-            return Change { radiance: Vector::ZERO, opacity: alpha };
-        }
-        Change { radiance: -(Vector::recorded(lighting.background) * alpha), opacity: alpha }
+        let opacity = self.before.number(slot::ALBEDO) * share;
+        let is_transparent = lighting.flags & flag::TRANSPARENT != 0;
+        let missing = || -(Vector::recorded(lighting.background) * opacity);
+        Change { radiance: if is_transparent { Vector::ZERO } else { missing() }, opacity }
     }
 }

@@ -6,7 +6,7 @@ use crate::light::codes::material::{EMISSIVE, LAMBERT};
 use crate::recording::lit::{flag, slot};
 use crate::verify::lit::certificate::LitStage;
 use crate::verify::lit::judge::{Mismatch, Name};
-use crate::verify::lit::kernel::{Kernel, Output, Vertex};
+use crate::verify::lit::kernel::{Kernel, Vertex};
 use crate::verify::lit::sampling::Material;
 use crate::verify::number::{Number, Vector};
 use crate::verify::rounding::Interval;
@@ -41,14 +41,13 @@ impl Kernel<'_> {
         let is_transparent = lighting.flags & flag::TRANSPARENT != 0;
         let shown = Vector::recorded(if is_transparent { [0.0; 3] } else { lighting.background });
         let left_over = before.vector(slot::THROUGHPUT).0[0];
-        self.unchanged(slot::DIRECTION)?;
+        self.same(KEPT, &[slot::DIRECTION])?;
         let Some(vertex) = self.vertex()? else {
             self.added(shown * left_over, Number::ZERO)?;
             self.write(ORIGIN, slot::ORIGIN, Vector::ZERO, 0.0)?;
             self.write_bits(FLAGS, [slot::ORIGIN, 3], 0)?;
-            let others = [slot::DEPARTURE, slot::THROUGHPUT, slot::FIRST];
-            let of_surface = [slot::NORMAL, slot::ALBEDO, slot::LOBE];
-            others.into_iter().chain(of_surface).try_for_each(|slot| self.unchanged(slot))?;
+            self.same(KEPT, &[slot::DEPARTURE, slot::THROUGHPUT, slot::FIRST])?;
+            self.same(KEPT, &[slot::NORMAL, slot::ALBEDO, slot::LOBE])?;
             return Ok(HitKind::Nothing);
         };
         let material = self.material_of(&vertex);
@@ -118,14 +117,6 @@ impl Kernel<'_> {
         let lighting = self.lighting();
         let beyond = distance - Number::recorded(lighting.cue_near);
         (beyond * Number::recorded(lighting.cue_scale)).clamp(0.0, 1.0)
-    }
-
-    fn unchanged(&mut self, slot: usize) -> Result<(), Mismatch> {
-        match &self.after {
-            Output::Recorded(after) => self.judge.same(KEPT, [&self.before.raw, after], slot),
-            // The new state began as the one before.
-            Output::Legal(_) => Ok(()),
-        }
     }
 
     /// Writes radiance and opacity: the sums of their previous values and the additions.
