@@ -46,7 +46,7 @@ macro_rules! define_camera_parameters {
 
             fn place(&self) -> Result<Placement, CameraError> {
                 match self.0 {
-                    $(ByKind::$variant(Table(table)) => table.pose().placement(DVec3::Y),)+
+                    $(ByKind::$variant(Table(table)) => table.pose().standing(None, DVec3::Y)?.placed(),)+
                 }
             }
 
@@ -136,12 +136,10 @@ impl CameraParameters {
         let site = Site::new(&self.place()?, aspect, subject);
         Ok(match &self.0 {
             ByKind::Pinhole(Table(table @ PinholeParameters { stereo: Some(eyes), .. })) => {
-                let camera = table.camera(&site)?;
-                Some(boxed(camera.stereo_pair(eyes.separation, eyes.convergence)?))
+                Some(boxed(table.camera(&site)?.stereo_pair(eyes.separation, eyes.convergence)?))
             }
             ByKind::Panorama(Table(table @ PanoramaParameters { stereo: Some(eyes), .. })) => {
-                let camera = table.camera(&site)?;
-                Some(boxed(camera.stereo_pair(eyes.separation, eyes.convergence)?))
+                Some(boxed(table.camera(&site)?.stereo_pair(eyes.separation, eyes.convergence)?))
             }
             _ => None,
         })

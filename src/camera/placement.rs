@@ -57,11 +57,7 @@ impl PoseParameters {
         Ok(self)
     }
 
-    pub(super) fn placement(self, default_up: DVec3) -> Result<Placement, CameraError> {
-        self.standing(None, default_up)?.placed()
-    }
-
-    fn placed(&self) -> Result<Placement, CameraError> {
+    pub(super) fn placed(&self) -> Result<Placement, CameraError> {
         let Self { eye, look_at, direction, .. } = *self;
         let (eye, toward) = match (eye, look_at, direction) {
             (Some(List(eye)), Some(List(look_at)), None) => {

@@ -4,8 +4,7 @@ use glam::{DVec2, DVec3};
 
 use super::pose::checked_point;
 use super::{Camera, CameraError, CameraKind, CameraVectors, PinholeCamera, checked_length, checked_range};
-use crate::geometry::math::MIN_LENGTH;
-use crate::geometry::math::concentric_disk;
+use crate::geometry::math::{MIN_LENGTH, concentric_disk};
 use crate::geometry::ray::Ray;
 
 /// A camera with a thin lens.

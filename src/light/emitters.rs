@@ -121,7 +121,6 @@ fn brightness(color: [f64; 3], surface: &SurfaceProperties) -> f64 {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::image::color::LinearRgb;
     use crate::scene::sphere::Sphere;
 
     fn lamp(radius: f64, strength: f32) -> Sphere {

@@ -148,13 +148,11 @@ fn parameters_of(settings: &RenderSettings, origin: DVec3) -> UploadedLighting {
 fn add_sky(sky: &Sky, parameters: &mut UploadedLighting) {
     match &sky.light {
         SkyLight::Constant(radiance) => {
-            let radiance = radiance.to_array();
-            (parameters.zenith, parameters.horizon, parameters.nadir) = (radiance, radiance, radiance);
+            [parameters.zenith, parameters.horizon, parameters.nadir] = [radiance.to_array(); 3];
         }
         SkyLight::Gradient { zenith, horizon, nadir } => {
-            parameters.zenith = zenith.to_array();
-            parameters.horizon = horizon.to_array();
-            parameters.nadir = nadir.to_array();
+            let ends = [zenith, horizon, nadir];
+            [parameters.zenith, parameters.horizon, parameters.nadir] = ends.map(|end| end.to_array());
         }
         SkyLight::Image { environment, strength, rotation } => {
             parameters.environment_size = [environment.width(), environment.height()];

@@ -41,14 +41,18 @@ pub(super) fn bounds_of_checked<T: Sync>(
     Ok(chunks?.into_iter().flatten().reduce(Bounds::union))
 }
 
-/// Converts spheres to f32 in the frame at `origin`.
-pub(super) fn narrowed<T: Sync>(
+/// The origin of a frame, the spheres in it, and their bounding box in world space.
+type InFrame = (DVec3, Vec<[f32; 4]>, Option<Bounds>);
+
+/// Checks spheres, and converts them to f32 in their own frame.
+pub(super) fn in_own_frame<T: Sync>(
     spheres: &[T],
     parts: impl Fn(&T) -> [f64; 4] + Sync,
-    origin: DVec3,
-) -> Result<Vec<[f32; 4]>, SceneError> {
-    parallel::try_map(spheres.len(), |i| moved(parts(&spheres[i]), origin))
-        .map_err(|_| SceneError::Memory { count: spheres.len() })
+) -> Result<InFrame, SceneError> {
+    let bounds = bounds_of_checked(spheres, &parts)?;
+    let origin = bounds.map_or(DVec3::ZERO, frame_origin);
+    let narrow = parallel::try_map(spheres.len(), |i| moved(parts(&spheres[i]), origin));
+    Ok((origin, narrow.map_err(|_| SceneError::Memory { count: spheres.len() })?, bounds))
 }
 
 /// Converts one sphere to f32 in the frame at `origin`.

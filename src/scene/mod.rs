@@ -13,7 +13,7 @@ use crate::parallel;
 use crate::scene::material::SurfaceProperties;
 use crate::scene::sphere::Sphere;
 use crate::scene::sphere_array::SphereArray;
-use frame::{bounds_of_checked, f64_parts, frame_origin, moved, narrowed};
+use frame::{bounds_of_checked, f64_parts, frame_origin, in_own_frame, moved};
 
 mod appearance;
 mod color_map;
@@ -60,9 +60,7 @@ impl Scene {
     /// Returns an error if a centre or radius is out of range (the error names the first such sphere in input order),
     /// or if there are too many spheres.
     pub fn new(spheres: &[Sphere]) -> Result<Self, SceneError> {
-        let bounds = bounds_of_checked(spheres, f64_parts)?;
-        let origin = bounds.map_or(DVec3::ZERO, frame_origin);
-        let narrow = narrowed(spheres, f64_parts, origin)?;
+        let (origin, narrow, bounds) = in_own_frame(spheres, f64_parts)?;
         Ok(Self::in_frame(origin, narrow, appearance_of(spheres), bounds))
     }
 
@@ -82,11 +80,7 @@ impl Scene {
                 }
                 (origin, spheres, bounds)
             }
-            SphereArray::F64(spheres) => {
-                let bounds = bounds_of_checked(&spheres, |s| *s)?;
-                let origin = bounds.map_or(DVec3::ZERO, frame_origin);
-                (origin, narrowed(&spheres, |s| *s, origin)?, bounds)
-            }
+            SphereArray::F64(spheres) => in_own_frame(&spheres, |s| *s)?,
         };
         appearance.check(count)?;
         Ok(Self::in_frame(origin, spheres, appearance, bounds))
@@ -106,9 +100,7 @@ impl Scene {
     /// # Errors
     /// Returns the same errors as [`Scene::new`].
     pub fn from_f64(spheres: &[[f64; 4]], color: LinearRgb) -> Result<Self, SceneError> {
-        let bounds = bounds_of_checked(spheres, |s| *s)?;
-        let origin = bounds.map_or(DVec3::ZERO, frame_origin);
-        let spheres = narrowed(spheres, |s| *s, origin)?;
+        let (origin, spheres, bounds) = in_own_frame(spheres, |s| *s)?;
         Ok(Self::in_frame(origin, spheres, color.into(), bounds))
     }
 

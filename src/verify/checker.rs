@@ -6,8 +6,7 @@ use glam::DVec3;
 use crate::geometry::math::wide;
 use crate::image::{Image, NO_ID};
 use crate::parallel::{map_parts, ranges};
-use crate::recording::pixel_at;
-use crate::recording::{NO_HIT, PlainRender, Recording, TracedPixel, TracedRay};
+use crate::recording::{NO_HIT, PlainRender, Recording, TracedPixel, TracedRay, pixel_at};
 use crate::scene::{Scene, SceneError};
 use crate::verify::bias::Deviations;
 use crate::verify::camera::{AnyRay, CameraModel, EnteredRay};
@@ -297,33 +296,7 @@ impl PixelCheck<'_> {
             measured.measure("shade", "the color", found.into(), legal);
         }
     }
-}
 
-fn check_ray(entered: &EnteredRay, ray: &TracedRay) -> Result<(), Mismatch> {
-    for (axis, name) in AXES.iter().enumerate() {
-        let (found, legal) = (ray.direction[axis], entered.direction[axis]);
-        legal_is("camera", format_args!("the direction's {name}"), found, legal)?;
-    }
-    entered.check_start(ray)
-}
-
-fn check_color(found: [f32; 3], legal: [Interval; 3]) -> Result<(), Mismatch> {
-    (0..3).try_for_each(|channel| legal_is("color", channel_name(channel), found[channel], legal[channel]))
-}
-
-fn wrong_id(found: u32, traced: u32) -> Mismatch {
-    let name = |id| if id == NO_ID { "a miss".to_owned() } else { format!("sphere {id}") };
-    Mismatch::new("id", format!("the picture has {}; {} was found", name(found), name(traced)))
-}
-
-fn wrong_normal(found: [f32; 3], exact: DVec3, error: f64) -> Mismatch {
-    let DVec3 { x, y, z } = exact;
-    let message =
-        format!("{found:?}; legal is what is within {error:.3e} of [{x:.9}, {y:.9}, {z:.9}] and of unit length");
-    Mismatch::new("normal", message)
-}
-
-impl PixelCheck<'_> {
     /// Judges a pixel of the picture without recording; `None` if there is no such picture, or if the pixel equals the
     /// recorded one.
     pub(super) fn judge_rendered(
@@ -375,6 +348,30 @@ impl PixelCheck<'_> {
         };
         Some(ray.depths(side))
     }
+}
+
+fn check_ray(entered: &EnteredRay, ray: &TracedRay) -> Result<(), Mismatch> {
+    for (axis, name) in AXES.iter().enumerate() {
+        let (found, legal) = (ray.direction[axis], entered.direction[axis]);
+        legal_is("camera", format_args!("the direction's {name}"), found, legal)?;
+    }
+    entered.check_start(ray)
+}
+
+fn check_color(found: [f32; 3], legal: [Interval; 3]) -> Result<(), Mismatch> {
+    (0..3).try_for_each(|channel| legal_is("color", channel_name(channel), found[channel], legal[channel]))
+}
+
+fn wrong_id(found: u32, traced: u32) -> Mismatch {
+    let name = |id| if id == NO_ID { "a miss".to_owned() } else { format!("sphere {id}") };
+    Mismatch::new("id", format!("the picture has {}; {} was found", name(found), name(traced)))
+}
+
+fn wrong_normal(found: [f32; 3], exact: DVec3, error: f64) -> Mismatch {
+    let DVec3 { x, y, z } = exact;
+    let message =
+        format!("{found:?}; legal is what is within {error:.3e} of [{x:.9}, {y:.9}, {z:.9}] and of unit length");
+    Mismatch::new("normal", message)
 }
 
 impl AnyRay {

@@ -235,8 +235,8 @@ impl Filter<'_> {
             let middle = 0.5 * (light[i].low + light[i].high);
             if middle.is_finite() { middle } else { 0.0 }
         });
-        let mut sums = [Interval { low: 0.0, high: 0.0 }; 4];
-        let mut weights = Interval { low: 0.0, high: 0.0 };
+        let mut sums = [Interval::ZERO; 4];
+        let mut weights = Interval::ZERO;
         // Sums of the magnitudes of all terms, of which rounding may change a part.
         let mut sizes = [0.0_f64; 3];
         // The least and the greatest light of all pixels that may have a weight, between which each mean lies.
@@ -337,7 +337,7 @@ impl Filter<'_> {
                 }
             }
         };
-        let mut tint = Interval { low: 0.0, high: 0.0 };
+        let mut tint = Interval::ZERO;
         for (a, b) in one.albedo.iter().zip(&other.albedo) {
             tint.low += (a.low - b.high).max(b.low - a.high).max(0.0).powi(2);
             tint.high += (a.high - b.low).max(b.high - a.low).powi(2);
@@ -364,7 +364,7 @@ const ANY: Interval = Interval { low: 0.0, high: 1.0 + PAD * U * 3.0 };
 
 /// The similarity of lights, relative to their noise.
 fn alike(light: &Light, other: &Light) -> Interval {
-    let mut change = Interval { low: 0.0, high: 0.0 };
+    let mut change = Interval::ZERO;
     let mut size = 0.0;
     for (channel, weight) in LUMINANCE.into_iter().enumerate() {
         let (a, b) = (light[channel], other[channel]);

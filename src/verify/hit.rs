@@ -318,7 +318,6 @@ pub(super) fn legal_hit(Candidate { sphere, id }: &Candidate, line: &Line, slack
 #[cfg(test)]
 mod tests {
     use fastrand::Rng;
-    use glam::Vec3;
 
     use super::*;
 

@@ -59,6 +59,8 @@ pub struct Interval {
 }
 
 impl Interval {
+    pub(super) const ZERO: Self = Self { low: 0.0, high: 0.0 };
+
     /// The numbers within `error` of `value`.
     pub(super) fn around(value: f64, error: f64) -> Self {
         Self { low: value - error, high: value + error }

@@ -96,10 +96,9 @@ impl LiveReference {
         let mut frame = LiveFrame::default();
         for (pixel, seen) in pixels.zip(&found) {
             let shares = smoothed(view, pixel, &known, &found);
-            let of = |lamps: f64, ambient: f64, steady: f64| steady + shares.x * lamps + shares.y * ambient;
             let color = seen.steady.color + shares.x * seen.lamps.color + shares.y * seen.ambient.color;
             frame.color.push(color.max(DVec3::ZERO).to_array());
-            let alpha = of(seen.lamps.alpha, seen.ambient.alpha, seen.steady.alpha);
+            let alpha = seen.steady.alpha + shares.x * seen.lamps.alpha + shares.y * seen.ambient.alpha;
             frame.alpha.push(alpha.clamp(0.0, 1.0));
             frame.depth.push(seen.depth);
             frame.id.push(seen.id);
@@ -196,7 +195,7 @@ struct Shade {
 }
 
 /// The light of a pixel: `steady`, plus `lamps` and `ambient` times their visible shares.
-#[derive(Clone, Copy, Debug)]
+#[derive(Clone, Copy, Debug, Default)]
 struct LivePixel {
     steady: Shade,
     lamps: Shade,
@@ -214,15 +213,7 @@ fn lit(context: &LightingContext<'_>, studio: &Studio, view: &View<'_>, number: 
     let is_transparent = context.settings.is_transparent;
     let behind = if is_transparent { DVec3::ZERO } else { context.background() };
     let steady = Shade { color: behind, alpha: 0.0 };
-    let nothing = LivePixel {
-        steady,
-        lamps: Shade::default(),
-        ambient: Shade::default(),
-        shares: [1.0; 2],
-        normal: DVec3::ZERO,
-        depth: f64::INFINITY,
-        id: NO_ID,
-    };
+    let nothing = LivePixel { steady, shares: [1.0; 2], depth: f64::INFINITY, id: NO_ID, ..LivePixel::default() };
     let Some(ray) = view.ray_through_center(pixel) else { return nothing };
     let ray = Ray { origin: ray.origin - context.scene.origin(), ..ray };
     let Some(interaction) = nearest(context, &SurfaceRay { ray, start: Start::Free }) else {

@@ -3,8 +3,7 @@
 use glam::{DVec2, DVec3};
 
 use crate::camera::sampling::unit;
-use crate::geometry::math::concentric_disk;
-use crate::geometry::math::wide;
+use crate::geometry::math::{concentric_disk, wide};
 use crate::image::color::{LUMINANCE, LinearRgb};
 
 pub(super) fn rgb(color: LinearRgb) -> DVec3 {

@@ -17,8 +17,7 @@ use crate::cpu::primary::{for_rows, primary_pixel};
 use crate::cpu::search::Search;
 use crate::geometry::math::wide;
 use crate::geometry::ray::Ray;
-use crate::image::outline;
-use crate::image::{Image, LayerSet, NO_ID, Pixel};
+use crate::image::{Image, LayerSet, NO_ID, Pixel, outline};
 use crate::render::{
     Decision, Integrator, Picture, PrimarySettings, Progress, RenderSettings, SettingsError, Watch, batch,
 };

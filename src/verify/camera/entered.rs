@@ -78,7 +78,7 @@ impl SlabCrossing {
 impl BoxCrossing {
     /// The crossing of an unbounded box.
     pub(crate) const UNBOUNDED: Self =
-        Self { enter: Interval { low: 0.0, high: 0.0 }, leave: Interval { low: f64::INFINITY, high: f64::INFINITY } };
+        Self { enter: Interval::ZERO, leave: Interval { low: f64::INFINITY, high: f64::INFINITY } };
 
     /// Intersects the crossing with the slab between two parallel planes.
     pub(crate) fn cut(&mut self, SlabCrossing { near, far }: SlabCrossing) {

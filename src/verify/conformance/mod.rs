@@ -117,14 +117,12 @@ pub use answers::{
     OF_GIVEN_RAYS, Rays, Reason,
 };
 
-use std::ops::Range;
-
 use answers::{KEPT, refused};
 use pixel::PixelCheck;
 
-use super::certificate::{CHUNK, Outcome};
+use super::certificate::Outcome;
 use super::checker::Checker;
-use crate::parallel::{map_parts, ranges};
+use crate::parallel::{self, map_parts};
 
 impl Checker<'_> {
     /// Judges the answers of any renderer to exact rays. `at_most` is the limit of k. Without it, the limit is
@@ -153,42 +151,25 @@ impl Checker<'_> {
             axis: rays.axis(),
             at_most,
         };
-        let mut found =
-            Conformance { size: answers.size, at_most, outcomes: Vec::new(), least: Vec::new(), worst: Vec::new() };
-        let mut worst = Vec::new();
-        for part in map_parts(ranges(answers.ids.len(), CHUNK), |range| judge(&check, range)) {
-            let (judged, worst_of_part) = part;
-            found.outcomes.extend(judged.iter().map(|(outcome, _)| *outcome));
-            found.least.extend(judged.iter().map(|(_, least)| *least));
-            worst.extend(worst_of_part);
-        }
-        keep_worst(&mut worst, |index| found.least[*index]);
+        let judged = parallel::map(answers.ids.len(), |index| check.judge(index));
+        let judged = judged.into_iter().map(|(outcome, least)| (outcome, least as f32));
+        let (outcomes, least): (Vec<Outcome>, Vec<f32>) = judged.unzip();
+        let worst = worst_of(&least);
+        let mut found = Conformance { size: answers.size, at_most, outcomes, least, worst: Vec::new() };
         let explain = |index: usize| check.explain(index, found.outcomes[index], found.least[index].into());
         found.worst = map_parts(worst, explain);
         Ok(found)
     }
 }
 
-/// The outcomes and the least k of a range of pixels, and the indices of pixels with the largest k, the worst first.
-fn judge(check: &PixelCheck<'_>, range: Range<usize>) -> (Vec<(Outcome, f32)>, Vec<usize>) {
-    let (start, mut others) = (range.start, Vec::new());
-    let judged = |index| {
-        let (outcome, least) = check.judge(index, &mut others);
-        (outcome, least as f32)
-    };
-    let all: Vec<_> = range.clone().map(judged).collect();
-    let least = |index: &usize| all[index - start].1;
-    let mut worst: Vec<usize> = range.filter(|index| least(index) > 0.0).collect();
-    keep_worst(&mut worst, least);
-    (all, worst)
-}
-
-/// Sorts pixels by their k, the largest first, and then by their index, and keeps the first.
-fn keep_worst(pixels: &mut Vec<usize>, least: impl Fn(&usize) -> f32) {
-    let order = |a: &usize, b: &usize| least(b).total_cmp(&least(a)).then(a.cmp(b));
+/// The pixels with the largest k that is not 0, the largest first, and then by their index.
+fn worst_of(least: &[f32]) -> Vec<usize> {
+    let mut pixels: Vec<usize> = (0..least.len()).filter(|index| least[*index] > 0.0).collect();
+    let order = |a: &usize, b: &usize| least[*b].total_cmp(&least[*a]).then(a.cmp(b));
     if pixels.len() > KEPT {
         pixels.select_nth_unstable_by(KEPT, order);
         pixels.truncate(KEPT);
     }
     pixels.sort_unstable_by(order);
+    pixels
 }

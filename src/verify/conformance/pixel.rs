@@ -2,12 +2,11 @@
 
 use glam::DVec3;
 
-use super::answers::{Answers, DepthKind, EPSILON, OF_COORDINATES, Rays};
+use super::answers::{Answers, DepthKind, EPSILON, Finding, OF_COORDINATES, Rays, Reason};
 use super::relative_sphere::RelativeSphere;
 use crate::image::NO_ID;
 use crate::scene::Scene;
 use crate::verify::certificate::Outcome;
-use crate::verify::conformance::answers::{Finding, Reason};
 use crate::verify::hit::Candidates;
 use crate::verify::sphere::Line;
 
@@ -36,7 +35,7 @@ struct ExactRay {
 }
 
 /// A sphere other than the one that the renderer found.
-pub(super) struct Other {
+struct Other {
     id: u32,
     seen: RelativeSphere,
     /// The distance at which it may be hit.
@@ -67,6 +66,11 @@ impl ExactRay {
     fn unit(&self, seen: &RelativeSphere) -> f64 {
         EPSILON * (seen.size() + self.start)
     }
+
+    /// The largest k of some spheres, given the move of each.
+    fn most(&self, others: &[Other], moved: impl Fn(&RelativeSphere) -> f64) -> f64 {
+        others.iter().map(|other| moved(&other.seen) / self.unit(&other.seen)).fold(0.0, f64::max)
+    }
 }
 
 impl PixelCheck<'_> {
@@ -81,8 +85,8 @@ impl PixelCheck<'_> {
         Some(ExactRay { line, world: in_world.max(in_frame), start: if is_made { in_frame } else { 0.0 } })
     }
 
-    /// Judges a pixel: its outcome and its least k. `others` is memory that is reused.
-    pub(super) fn judge(&self, index: usize, others: &mut Vec<Other>) -> (Outcome, f64) {
+    /// Judges a pixel: its outcome and its least k.
+    pub(super) fn judge(&self, index: usize) -> (Outcome, f64) {
         let id = self.answers.ids[index];
         let Some(ray) = self.ray(index) else {
             // If the camera has no ray, only a miss is legal.
@@ -90,21 +94,21 @@ impl PixelCheck<'_> {
         };
         let (least, is_only) = match self.claim(index, id, &ray) {
             None => {
-                self.find(&ray, None, others);
-                let least = self.to_be_missed(&ray, others);
-                let is_legal = least <= self.at_most;
-                if !is_legal {
-                    self.find_crossed(&ray, None, f64::INFINITY, others);
+                let (mut others, _) = self.find(&ray, None);
+                let mut least = ray.most(&others, RelativeSphere::move_to_miss);
+                if least > self.at_most {
+                    others = self.find_crossed(&ray, None, f64::INFINITY);
+                    least = ray.most(&others, RelativeSphere::move_to_miss);
                 }
-                (if is_legal { least } else { self.to_be_missed(&ray, others) }, others.is_empty())
+                (least, others.is_empty())
             }
             Some(claim) => {
-                let is_certain = self.find(&ray, Some(&claim), others);
-                let mut least = Self::to_be_nearest(&ray, &claim, others);
+                let (mut others, is_certain) = self.find(&ray, Some(&claim));
+                let mut least = Self::to_be_nearest(&ray, &claim, &others);
                 if least > self.at_most {
                     let t = claim.distance.unwrap_or_else(|| claim.earliest(claim.alone));
-                    self.find_crossed(&ray, Some(&claim), t, others);
-                    least = Self::to_be_nearest(&ray, &claim, others);
+                    others = self.find_crossed(&ray, Some(&claim), t);
+                    least = Self::to_be_nearest(&ray, &claim, &others);
                 }
                 (least, is_certain && others.is_empty() && claim.tells_normals)
             }
@@ -131,8 +135,7 @@ impl PixelCheck<'_> {
             exact: None,
         };
         let Some(ray) = self.ray(index) else { return finding };
-        let mut crossed = Vec::new();
-        self.find_crossed(&ray, None, f64::INFINITY, &mut crossed);
+        let crossed = self.find_crossed(&ray, None, f64::INFINITY);
         let nearest = crossed.iter().min_by(|a, b| a.earliest.total_cmp(&b.earliest).then(a.id.cmp(&b.id)));
         finding.exact = nearest.map(|other| (other.id, other.earliest));
         match self.claim(index, id, &ray) {
@@ -199,11 +202,10 @@ impl PixelCheck<'_> {
         Some(Claim { sphere, seen, unit, distance, alone, moved, reason, tells_normals })
     }
 
-    /// Finds the other spheres that may be the nearest, for k of at most the limit. Returns whether
-    /// the claimed sphere is certainly hit.
-    fn find(&self, ray: &ExactRay, claim: Option<&Claim>, others: &mut Vec<Other>) -> bool {
-        others.clear();
-        let k = self.at_most;
+    /// The other spheres that may be the nearest, for k of at most the limit, and whether the claimed sphere is certainly
+    /// hit.
+    fn find(&self, ray: &ExactRay, claim: Option<&Claim>) -> (Vec<Other>, bool) {
+        let (mut others, k) = (Vec::<Other>::new(), self.at_most);
         let longest = self.candidates.longest_from(ray.line.origin);
         let beside = k * EPSILON * (longest + ray.start) + OF_SEARCH * longest;
         let claimed = claim.map(|claim| (claim, k * claim.unit));
@@ -225,12 +227,12 @@ impl PixelCheck<'_> {
             limit
         });
         others.retain(|other| other.earliest <= limit);
-        certain.is_some()
+        (others, certain.is_some())
     }
 
-    /// Finds the spheres other than the claimed one that the exact ray meets before `t`.
-    fn find_crossed(&self, ray: &ExactRay, claim: Option<&Claim>, t: f64, others: &mut Vec<Other>) {
-        others.clear();
+    /// The spheres other than the claimed one that the exact ray meets before `t`.
+    fn find_crossed(&self, ray: &ExactRay, claim: Option<&Claim>, t: f64) -> Vec<Other> {
+        let mut others = Vec::new();
         let beside = OF_SEARCH * self.candidates.longest_from(ray.line.origin);
         self.candidates.visit_beside(&ray.line, beside, t, |candidate| {
             let seen = ray.seen(candidate.sphere);
@@ -240,20 +242,12 @@ impl PixelCheck<'_> {
             }
             t
         });
-    }
-
-    /// The least k for which the ray misses every sphere.
-    fn to_be_missed(&self, ray: &ExactRay, others: &[Other]) -> f64 {
-        let needed = |other: &Other| other.seen.move_to_miss() / ray.unit(&other.seen);
-        others.iter().map(needed).fold(0.0, f64::max)
+        others
     }
 
     /// The least k for which a claim is right by itself, and no other sphere certainly hides it.
     fn to_be_nearest(ray: &ExactRay, claim: &Claim, others: &[Other]) -> f64 {
-        let hidden = |t: f64| {
-            let needed = |other: &Other| other.seen.move_to_pass(t) / ray.unit(&other.seen);
-            others.iter().map(needed).fold(0.0, f64::max)
-        };
+        let hidden = |t: f64| ray.most(others, |seen| seen.move_to_pass(t));
         let alone = claim.alone;
         if let Some(t) = claim.distance {
             return alone.max(hidden(t));

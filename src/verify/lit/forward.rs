@@ -70,12 +70,13 @@ fn box_of_occluders(scene: &Scene) -> Option<[[f32; 3]; 2]> {
 
 impl LitCheck<'_> {
     /// The means of all samples of a pixel; `None` if hardly anything is known.
-    pub(crate) fn legal_pixel(&self, pixel: [u32; 2], hits: &mut LegalHits) -> Option<PixelLight> {
+    pub(crate) fn legal_pixel(&self, pixel: [u32; 2]) -> Option<PixelLight> {
+        let mut hits = LegalHits::default();
         let samples = self.inputs.settings.sampling.samples.max(1);
         let (mut color, mut albedo, mut alpha) = ([Mean::default(); 3], [Mean::default(); 3], Mean::default());
         let mut luminances = Vec::with_capacity(samples as usize);
         for sample in 0..samples {
-            let LegalSample { light, first } = self.legal_sample(Address { pixel, sample, surface: 0 }, hits)?;
+            let LegalSample { light, first } = self.legal_sample(Address { pixel, sample, surface: 0 }, &mut hits)?;
             alpha.add(light.opacity.interval());
             let light = light.radiance;
             color.iter_mut().zip(light.intervals()).for_each(|(mean, more)| mean.add(more));
@@ -257,7 +258,7 @@ impl Mean {
 fn variance(luminances: &[Interval]) -> Interval {
     let count = luminances.len() as f64;
     if count < 2.0 {
-        return Interval { low: 0.0, high: 0.0 };
+        return Interval::ZERO;
     }
     let mut mean = Mean::default();
     luminances.iter().for_each(|light| mean.add(*light));

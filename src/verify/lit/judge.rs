@@ -169,10 +169,10 @@ impl LitCertificate {
         Address { pixel, sample, surface }: Address,
         result: Result<StageResult, Mismatch>,
     ) {
+        let counts = &mut self.counts[stage as usize];
+        counts.checked += 1;
         match result {
-            Ok(StageResult { verdict, alternatives, deviations }) => {
-                let counts = &mut self.counts[stage as usize];
-                counts.checked += 1;
+            Ok(StageResult { verdict, alternatives: legal, deviations }) => {
                 match verdict {
                     StageOutcome::Decided => counts.decided += 1,
                     StageOutcome::Open => counts.open += 1,
@@ -180,16 +180,13 @@ impl LitCertificate {
                 }
                 if verdict != StageOutcome::Decided {
                     let is_undecided = verdict == StageOutcome::Undecided;
-                    let legal = alternatives;
                     self.add_open(LitOpen { pixel, sample, surface, stage, is_undecided, legal });
                 }
                 for (stage, what, deviation) in deviations {
                     self.deviations.add(stage.name(), what, deviation);
                 }
             }
-            Err(mismatch) => {
-                self.counts[stage as usize].checked += 1;
-                let Mismatch { stage, message, .. } = mismatch;
+            Err(Mismatch { stage, message, .. }) => {
                 self.violations.push(LitViolation { pixel, sample, surface, stage, message });
             }
         }

@@ -4,7 +4,7 @@
 use glam::DVec3;
 
 use crate::image::NO_ID;
-use crate::image::color::LUMINANCE;
+use crate::image::color::luminance;
 use crate::image::denoise::REACH;
 use crate::image::outline::{self, Outline};
 use crate::parallel;
@@ -47,20 +47,18 @@ impl LitCheck<'_> {
         let needed = near(size, indices.iter().copied(), reach);
         let needed = |pixel: [u32; 2]| needed[pixel[1] as usize * size[0] as usize + pixel[0] as usize];
         let spots = match is_denoised || lines.is_some() {
-            true => self.all_pixels(count, |pixel, hits| needed(pixel).then(|| self.spot(pixel, hits)).flatten()),
+            true => self.all_pixels(count, |pixel| needed(pixel).then(|| self.spot(pixel)).flatten()),
             false => Vec::new(),
         };
         let mut light: Vec<Option<[Interval; 4]>> = if is_denoised {
-            let light =
-                |pixel: [u32; 2], hits: &mut LegalHits| needed(pixel).then(|| self.legal_pixel(pixel, hits)).flatten();
-            let lights = self.all_pixels(count, light);
+            let lights = self.all_pixels(count, |pixel| needed(pixel).then(|| self.legal_pixel(pixel)).flatten());
             let quiet = without_noise(size, &lights, &spots, indices);
             let any_alpha = Interval { low: 0.0, high: 1.0 };
             let alpha = |index: usize| lights[index].as_ref().map_or(any_alpha, |light| light.alpha);
             indices.iter().map(|index| Some(with_alpha(quiet[*index], alpha(*index)))).collect()
         } else {
             parallel::map(indices.len(), |at| {
-                let light = self.legal_pixel(pixel_at(indices[at], size[0]), &mut LegalHits::default());
+                let light = self.legal_pixel(pixel_at(indices[at], size[0]));
                 light.map(|light| with_alpha(light.color, light.alpha))
             })
         };
@@ -73,22 +71,18 @@ impl LitCheck<'_> {
         light
     }
 
-    fn all_pixels<T: Send>(&self, count: usize, find: impl Fn([u32; 2], &mut LegalHits) -> T + Sync) -> Vec<T> {
-        parallel::map(count, |index| find(pixel_at(index, self.inputs.size[0]), &mut LegalHits::default()))
+    fn all_pixels<T: Send>(&self, count: usize, find: impl Fn([u32; 2]) -> T + Sync) -> Vec<T> {
+        parallel::map(count, |index| find(pixel_at(index, self.inputs.size[0])))
     }
 
-    fn spot(&self, pixel: [u32; 2], hits: &mut LegalHits) -> Option<Spot> {
+    fn spot(&self, pixel: [u32; 2]) -> Option<Spot> {
+        let mut hits = LegalHits::default();
         let ray = self.model.ray(pixel).any(&self.model);
         let moved = self.moved(ray.line.origin);
         let ray = ray.moved(moved);
-        ray.find(&self.checker.candidates, hits);
+        ray.find(&self.checker.candidates, &mut hits);
         match (&hits.spheres[..], hits.miss) {
-            ([], true) => Some(Spot {
-                id: NO_ID,
-                depth: Interval { low: 0.0, high: 0.0 },
-                normal: DVec3::ZERO,
-                normal_error: 0.0,
-            }),
+            ([], true) => Some(Spot { id: NO_ID, depth: Interval::ZERO, normal: DVec3::ZERO, normal_error: 0.0 }),
             ([hit], false) => {
                 let ((None, Some(side)) | (Some(side), None)) = (hit.near, hit.far) else { return None };
                 let normals = LegalNormals::new(&ray.line, self.checker.scene.spheres()[hit.id as usize], ray.slack);
@@ -126,7 +120,6 @@ fn without_noise(
     spots: &[Option<Spot>],
     indices: &[usize],
 ) -> Vec<[Interval; 3]> {
-    let luminance = |color: [f64; 3]| (0..3).map(|i| LUMINANCE[i] * color[i]).sum::<f64>();
     let (mut guides, mut divided) = (Vec::with_capacity(spots.len()), Vec::with_capacity(spots.len()));
     for (light, spot) in lights.iter().zip(spots) {
         let unknown = PixelLight {
@@ -151,7 +144,7 @@ fn without_noise(
             high: light.variance.high / (least * least) * (1.0 + relative) + FLUSH,
         };
         divided.push([quotient(0), quotient(1), quotient(2), variance] as Light);
-        let depth = spot.map_or(Interval { low: 0.0, high: 0.0 }, |spot| spot.depth);
+        let depth = spot.map_or(Interval::ZERO, |spot| spot.depth);
         let middle = 0.5 * (depth.low + depth.high);
         let DVec3 { x, y, z } = spot.map_or(DVec3::ZERO, |spot| spot.normal);
         guides.push(LegalGuide {

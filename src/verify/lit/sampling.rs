@@ -223,12 +223,7 @@ fn ggx_density(alpha: Number, half: Vector) -> Number {
 }
 
 /// A random microfacet normal that is visible from `out`.
-pub(crate) fn visible_mirror(
-    alpha: Number,
-    out: Vector,
-    u: [u32; 2],
-    choices: &mut crate::verify::choices::Choices,
-) -> Vector {
+pub(crate) fn visible_mirror(alpha: Number, out: Vector, u: [u32; 2], choices: &mut Choices) -> Vector {
     let Vector([x, y, z]) = out;
     let stretched = Vector([alpha * x, alpha * y, z]).normalized();
     let Vector([x, y, z]) = stretched;

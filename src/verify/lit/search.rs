@@ -286,7 +286,6 @@ impl Doubts {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::verify::hit::Candidates;
 
     #[test]
     fn legal_hits_are_named_by_distance() {

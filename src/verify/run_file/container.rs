@@ -206,10 +206,6 @@ impl<'a> Container<'a> {
         text(&self.header, key).ok_or_else(|| contradiction(format!("the text `{key}` is missing")))
     }
 
-    pub(super) fn has_text(&self, key: &str) -> bool {
-        text(&self.header, key).is_some()
-    }
-
     pub(super) fn has(&self, name: &str) -> bool {
         self.header.info(name).is_some()
     }

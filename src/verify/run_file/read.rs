@@ -102,10 +102,8 @@ fn image(file: &Container<'_>, film: &Film, [color, depth, normal, id]: [&str; 4
 
 fn rendered(file: &Container<'_>, film: &Film) -> Result<PlainRender, RunFileError> {
     const LAYERS: [&str; 4] = ["rendered_color", "rendered_depth", "rendered_normal", "rendered_id"];
-    if !file.has_text("rendered") {
-        return Ok(PlainRender::None);
-    }
-    match file.text("rendered")? {
+    let Ok(text) = file.text("rendered") else { return Ok(PlainRender::None) };
+    match text {
         "same" => Ok(PlainRender::Same),
         "other" => image(file, film, LAYERS).map(Box::new).map(PlainRender::Other),
         other => Err(contradiction(format!("`rendered` is `{}`; it must be `same` or `other`", shortened(other)))),

@@ -2,8 +2,7 @@
 
 use std::borrow::Cow;
 use std::collections::BTreeMap;
-use std::io;
-use std::io::Write;
+use std::io::{self, Write};
 
 use crate::image::Image;
 use crate::scene::material::SurfaceProperties;
@@ -29,18 +28,14 @@ pub fn write(scene: &Scene, recording: &Recording, provenance: &Provenance, out:
         provenance.clone().texts().map(|(key, text)| (key.to_owned(), text.clone())).into();
     let limits = provenance.limits.iter();
     texts.extend(limits.map(|(name, limit)| (format!("{LIMIT}{name}"), limit.to_string())));
-    for (key, text) in
-        [("camera", camera.kind.name()), ("y_axis", film.y_axis().name()), ("shading", primary.shading.name())]
-    {
-        texts.insert(key.to_owned(), text.to_owned());
-    }
-    let is_rendered = match rendered {
+    let rendered_as = match rendered {
         PlainRender::None => None,
-        PlainRender::Same => Some("same"),
-        PlainRender::Other(_) => Some("other"),
+        PlainRender::Same => Some(("rendered", "same")),
+        PlainRender::Other(_) => Some(("rendered", "other")),
     };
-    texts.extend(is_rendered.map(|text| ("rendered".to_owned(), text.to_owned())));
-    texts.insert("scene_sha256".to_owned(), scene_sha256(scene));
+    let (y_axis, shading, digest) = (film.y_axis().name(), primary.shading.name(), scene_sha256(scene));
+    let known = [("camera", camera.kind.name()), ("y_axis", y_axis), ("shading", shading), ("scene_sha256", &digest)];
+    texts.extend(known.into_iter().chain(rendered_as).map(|(key, text)| (key.to_owned(), text.to_owned())));
 
     let vectors = &camera.vectors;
     let numbers = vectors.numbers.into();

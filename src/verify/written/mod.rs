@@ -17,11 +17,10 @@ pub use samples::{Samples, WrittenError, WrittenPicture};
 
 use samples::{LegalColor, LegalSample, PictureCheck};
 
-use super::certificate::{CHUNK, KEPT, Outcome, Verdict, channel_name};
+use super::certificate::{KEPT, Outcome, Verdict, channel_name};
 use super::checker::Checker;
-use super::hit::LegalHits;
 use crate::camera::View;
-use crate::parallel::{map_parts, ranges};
+use crate::parallel;
 use crate::recording::pixel_at;
 use crate::render::PrimarySettings;
 use crate::verify::rounding::Interval;
@@ -92,9 +91,8 @@ impl Checker<'_> {
         indices: &[usize],
     ) -> Vec<Option<[Interval; 4]>> {
         let check = PictureCheck::new(self, view, primary);
-        let (mut hits, mut colors) = (LegalHits::default(), Vec::new());
         let legal = |index: &usize| {
-            check.legal(pixel_at(*index, view.film.width()), &mut hits, &mut colors);
+            let (_, colors) = check.legal(pixel_at(*index, view.film.width()));
             let channels = |color: &LegalColor| {
                 let [r, g, b] = color.color;
                 let alpha = if color.is_hit || !primary.is_transparent { 1.0 } else { 0.0 };
@@ -119,35 +117,21 @@ impl Checker<'_> {
         let size = [view.film.width(), view.film.height()];
         picture.check(size)?;
         let check = PictureCheck::new(self, view, primary);
-        let empty = || WrittenCertificate { size, verdicts: Vec::new(), violations: Vec::new() };
-        let count = size[0] as usize * size[1] as usize;
-        let parts = map_parts(ranges(count, CHUNK), |range| {
-            let mut part = empty();
-            let (mut hits, mut colors) = (LegalHits::default(), Vec::new());
-            for index in range {
-                let pixel = pixel_at(index, size[0]);
-                let verdict = check.legal(pixel, &mut hits, &mut colors);
-                let legal = |color| picture.legal(color, primary.is_transparent);
-                let allowed: Vec<_> = colors.iter().map(legal).collect();
-                let found = picture.at(index);
-                part.verdicts.push(match LegalSample::judge(&allowed, &found) {
-                    None => verdict,
-                    Some((channel, legal)) => {
-                        let found = found[channel];
-                        part.violations.push(WrittenViolation { pixel, channel, found, legal });
-                        Verdict::Violation
-                    }
-                });
+        let judge = |index: usize| {
+            let pixel = pixel_at(index, size[0]);
+            let (verdict, colors) = check.legal(pixel);
+            let allowed: Vec<_> = colors.iter().map(|color| picture.legal(color, primary.is_transparent)).collect();
+            let found = picture.at(index);
+            match LegalSample::judge(&allowed, &found) {
+                None => Ok(verdict),
+                Some((channel, legal)) => Err(WrittenViolation { pixel, channel, found: found[channel], legal }),
             }
-            part.violations.truncate(KEPT);
-            part
-        });
-        let mut certificate = empty();
-        for part in parts {
-            certificate.verdicts.extend(part.verdicts);
-            let room = KEPT.saturating_sub(certificate.violations.len());
-            certificate.violations.extend(part.violations.into_iter().take(room));
-        }
-        Ok(certificate)
+        };
+        let count = size[0] as usize * size[1] as usize;
+        let verdicts = parallel::map(count, |index| judge(index).unwrap_or(Verdict::Violation));
+        // The few violations that are kept are found again, so that other pixels need no memory for one.
+        let illegal = (0..count).filter(|index| verdicts[*index] == Verdict::Violation);
+        let violations = illegal.take(KEPT).filter_map(|index| judge(index).err()).collect();
+        Ok(WrittenCertificate { size, verdicts, violations })
     }
 }

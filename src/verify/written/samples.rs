@@ -40,18 +40,18 @@ impl<'a> PictureCheck<'a> {
         Self { checker, model, primary, moved }
     }
 
-    /// Finds the legal colours of a pixel. The verdict says whether there is a single legal answer.
-    pub(super) fn legal(&self, pixel: [u32; 2], hits: &mut LegalHits, colors: &mut Vec<LegalColor>) -> Verdict {
+    /// The legal colours of a pixel. The verdict says whether there is a single legal answer.
+    pub(super) fn legal(&self, pixel: [u32; 2]) -> (Verdict, Vec<LegalColor>) {
+        let (mut hits, mut colors) = (LegalHits::default(), Vec::new());
         hits.clear();
-        colors.clear();
         if !self.checker.scene.is_empty() {
-            self.find(pixel, hits, colors);
+            self.find(pixel, &mut hits, &mut colors);
         }
         if hits.miss {
             let color = self.primary.background.to_array().map(exactly);
             colors.push(LegalColor { color, is_hit: false });
         }
-        Verdict::of(hits)
+        (Verdict::of(&hits), colors)
     }
 
     /// Finds the spheres that may be hit, and their colours.
@@ -153,51 +153,18 @@ impl WrittenPicture<'_> {
         }
         found
     }
-}
 
-/// The legal samples of a pixel for one answer: the least and the greatest of each channel.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub(super) struct LegalSample([[f64; 2]; 4]);
-
-impl LegalSample {
-    /// Compares a pixel with its legal samples: `None` if one of them contains it. Otherwise returns the first channel
-    /// that is not legal in the sample that contains the most channels, and the legal interval there.
-    pub(super) fn judge(legal: &[Self], found: &[f64; 4]) -> Option<(usize, [f64; 2])> {
-        let outside = |Self(channels): &Self| {
-            channels.iter().zip(found).position(|([low, high], found)| !(low <= found && found <= high))
-        };
-        if legal.iter().any(|legal| outside(legal).is_none()) {
-            return None;
-        }
-        let nearest = legal.iter().filter_map(|legal| Some((outside(legal)?, legal)));
-        // If there is no legal answer, which does not happen, nothing is legal.
-        let (channel, Self(channels)) =
-            nearest.max_by_key(|(channel, _)| *channel).unwrap_or((0, &Self([[f64::NAN; 2]; 4])));
-        Some((channel, channels[channel]))
-    }
-}
-
-impl WrittenPicture<'_> {
     /// The legal samples for legal colours. Misses are transparent if the picture is.
     pub(super) fn legal(&self, legal: &LegalColor, is_transparent: bool) -> LegalSample {
         let alpha = if legal.is_hit || !is_transparent { 1.0 } else { 0.0 };
         let Self { samples, encoding, .. } = self;
-        let mut channels = [[0.0; 2]; 4];
         let Samples::Encoded(_) = samples else {
-            for (channel, color) in channels.iter_mut().zip(legal.color) {
-                *channel = [color.low, color.high];
-            }
-            channels[3] = [if encoding.transparent { alpha } else { 1.0 }; 2];
-            return LegalSample(channels);
+            let [r, g, b] = legal.color.map(|color| [color.low, color.high]);
+            return LegalSample([r, g, b, [if encoding.transparent { alpha } else { 1.0 }; 2]]);
         };
         let [low, high] = self.displayed(legal).map(|ends| encode(encoding.bits, ends));
-        for channel in 0..3 {
-            channels[channel] = [low[channel], high[channel]];
-        }
-        if encoding.transparent {
-            channels[3] = [alpha * f64::from(encoding.bits.white()); 2];
-        }
-        LegalSample(channels)
+        let alpha = if encoding.transparent { alpha * f64::from(encoding.bits.white()) } else { 0.0 };
+        LegalSample([[low[0], high[0]], [low[1], high[1]], [low[2], high[2]], [alpha; 2]])
     }
 
     /// The least and the greatest samples for light and alpha between the ends of intervals. `None` if nothing is known.
@@ -230,14 +197,9 @@ impl WrittenPicture<'_> {
                     alpha.max(0.0) * f64::from(shown.clamp(0.0, 1.0)) + (1.0 - alpha.max(0.0)) * background[c]
                 };
                 let around = |c: usize| {
-                    let corners = [
-                        over(low[c], least, c),
-                        over(low[c], most, c),
-                        over(high[c], least, c),
-                        over(high[c], most, c),
-                    ];
-                    let [low, high] =
-                        [f64::min as fn(f64, f64) -> f64, f64::max].map(|f| corners.into_iter().fold(corners[0], f));
+                    let corners = [low[c], high[c]].map(|end| [least, most].map(|alpha| over(end, alpha, c)));
+                    let ends = [f64::min as fn(f64, f64) -> f64, f64::max];
+                    let [low, high] = ends.map(|f| corners.into_iter().flatten().fold(corners[0][0], f));
                     Interval::around(0.5 * (low + high), 0.5 * (high - low) + 8.0 * U * (1.0 + high.abs()))
                 };
                 ends([0, 1, 2].map(around))
@@ -300,6 +262,28 @@ impl WrittenPicture<'_> {
             return ends;
         }
         encoding.display_range(ends)
+    }
+}
+
+/// The legal samples of a pixel for one answer: the least and the greatest of each channel.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(super) struct LegalSample([[f64; 2]; 4]);
+
+impl LegalSample {
+    /// Compares a pixel with its legal samples: `None` if one of them contains it. Otherwise returns the first channel
+    /// that is not legal in the sample that contains the most channels, and the legal interval there.
+    pub(super) fn judge(legal: &[Self], found: &[f64; 4]) -> Option<(usize, [f64; 2])> {
+        let outside = |Self(channels): &Self| {
+            channels.iter().zip(found).position(|([low, high], found)| !(low <= found && found <= high))
+        };
+        if legal.iter().any(|legal| outside(legal).is_none()) {
+            return None;
+        }
+        let nearest = legal.iter().filter_map(|legal| Some((outside(legal)?, legal)));
+        // If there is no legal answer, which does not happen, nothing is legal.
+        let (channel, Self(channels)) =
+            nearest.max_by_key(|(channel, _)| *channel).unwrap_or((0, &Self([[f64::NAN; 2]; 4])));
+        Some((channel, channels[channel]))
     }
 }
 
