@@ -154,7 +154,8 @@ struct SphereHit {
     is_outside: bool,
 }
 
-/// The hit of a ray that starts on the sphere `own`. Inlined, so that callers that need only the distance do not compute the rest.
+/// The hit of a ray that starts on the sphere `own`. Inlined, so that callers that need only the distance do not compute
+/// the rest.
 #[inline(always)]
 fn hit_of(ray: &Ray, start: Start, own: Option<[f32; 4]>, sphere: [f32; 4]) -> Option<SphereHit> {
     let [x, y, z, radius] = sphere.map(f64::from);

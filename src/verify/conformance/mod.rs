@@ -152,8 +152,7 @@ impl Checker<'_> {
             at_most,
         };
         let judged = parallel::map(answers.ids.len(), |index| check.judge(index));
-        let judged = judged.into_iter().map(|(outcome, least)| (outcome, least as f32));
-        let (outcomes, least): (Vec<Outcome>, Vec<f32>) = judged.unzip();
+        let (outcomes, least): (Vec<Outcome>, Vec<f32>) = judged.into_iter().unzip();
         let worst = worst_of(&least);
         let mut found = Conformance { size: answers.size, at_most, outcomes, least, worst: Vec::new() };
         let explain = |index: usize| check.explain(index, found.outcomes[index], found.least[index].into());

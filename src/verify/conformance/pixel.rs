@@ -86,11 +86,11 @@ impl PixelCheck<'_> {
     }
 
     /// Judges a pixel: its outcome and its least k.
-    pub(super) fn judge(&self, index: usize) -> (Outcome, f64) {
+    pub(super) fn judge(&self, index: usize) -> (Outcome, f32) {
         let id = self.answers.ids[index];
         let Some(ray) = self.ray(index) else {
             // If the camera has no ray, only a miss is legal.
-            return if id == NO_ID { (Outcome::Proved, 0.0) } else { (Outcome::Violated, f64::INFINITY) };
+            return if id == NO_ID { (Outcome::Proved, 0.0) } else { (Outcome::Violated, f32::INFINITY) };
         };
         let (least, is_only) = match self.claim(index, id, &ray) {
             None => {
@@ -118,7 +118,7 @@ impl PixelCheck<'_> {
             (true, false) => Outcome::Undecided,
             (true, true) => Outcome::Proved,
         };
-        (outcome, least)
+        (outcome, least as f32)
     }
 
     /// Explains why a pixel needs its k.
