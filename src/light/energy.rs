@@ -182,7 +182,7 @@ fn mean_weight(lobe: Lobe, cosine: f64, points: &[[f64; 2]]) -> f64 {
 }
 
 /// Smith's function Λ for GGX, at a cosine.
-pub(crate) fn smith(cosine: f64, alpha: f64) -> f64 {
+fn smith(cosine: f64, alpha: f64) -> f64 {
     let square = cosine * cosine;
     0.5 * ((1.0 + alpha * alpha * (1.0 - square) / square).sqrt() - 1.0)
 }
@@ -200,7 +200,7 @@ fn visible_normal(view: DVec3, alpha: f64, [x, y]: [f64; 2]) -> DVec3 {
 
 /// The fraction of unpolarised light that is reflected, and the cosine of the refracted direction, by Fresnel's
 /// equations.
-pub(crate) fn fresnel(cosine: f64, eta: f64) -> (f64, f64) {
+fn fresnel(cosine: f64, eta: f64) -> (f64, f64) {
     let sine_squared = (1.0 - cosine * cosine) / (eta * eta);
     if sine_squared >= 1.0 {
         return (1.0, 0.0);

@@ -7,7 +7,7 @@ use glam::DVec3;
 use super::context::{LightingContext, Surface};
 use super::maps::{self, disk};
 use super::surface_ray::Interaction;
-use crate::light::energy::{self, ENTRIES, fresnel, smith};
+use crate::light::energy::{self, ENTRIES};
 use crate::scene::material::Material;
 
 /// The smallest cosine of a direction. Smaller ones are replaced by it.
@@ -226,6 +226,19 @@ impl Dielectric {
     }
 }
 
+/// The fraction of unpolarised light that is reflected, and the cosine of the refracted direction, by Fresnel's
+/// equations.
+fn fresnel(cosine: f64, eta: f64) -> (f64, f64) {
+    let sine_squared = (1.0 - cosine * cosine) / (eta * eta);
+    if sine_squared >= 1.0 {
+        return (1.0, 0.0);
+    }
+    let inside = (1.0 - sine_squared).sqrt();
+    let parallel = (eta * cosine - inside) / (eta * cosine + inside);
+    let perpendicular = (cosine - eta * inside) / (cosine + eta * inside);
+    (0.5 * (parallel * parallel + perpendicular * perpendicular), inside)
+}
+
 /// Rough reflection: the GGX distribution of microfacet normals (Trowbridge and Reitz), with shadowing after Smith. The
 /// number is α, the square of the roughness.
 #[derive(Clone, Copy, Debug)]
@@ -236,14 +249,20 @@ impl Ggx {
         Self(f64::from(roughness) * f64::from(roughness))
     }
 
+    /// Smith's function Λ at a cosine.
+    fn lambda(self, cosine: f64) -> f64 {
+        let square = cosine * cosine;
+        0.5 * ((1.0 + self.0 * self.0 * (1.0 - square) / square).sqrt() - 1.0)
+    }
+
     /// The fraction of microfacets that are visible from a direction.
     fn g1(self, cosine: f64) -> f64 {
-        1.0 / (1.0 + smith(cosine, self.0))
+        1.0 / (1.0 + self.lambda(cosine))
     }
 
     /// The fraction of microfacets that are visible from two directions on the same side.
     fn g2(self, out: f64, into: f64) -> f64 {
-        1.0 / (1.0 + smith(out, self.0) + smith(into, self.0))
+        1.0 / (1.0 + self.lambda(out) + self.lambda(into))
     }
 
     fn density_of_normals(self, h: DVec3) -> f64 {

@@ -11,7 +11,7 @@ use crate::gpu::scene::appearance::color_words;
 use crate::gpu::scene::scene_buffers::{SceneBuffers, binding_limit};
 use crate::gpu::scene::scene_summary::SceneSummary;
 use crate::gpu::scene::scene_upload::BrickBuffers;
-use crate::gpu::shader::layouts::{layout, storage, uniform};
+use crate::gpu::shader::layouts::{layout, searched, storage, uniform};
 use crate::gpu::shader::textures::Searched;
 use crate::gpu::shader::{Kernel, pipeline};
 use crate::scene::material::{Material, SurfaceProperties};
@@ -48,7 +48,7 @@ impl Recolor {
     /// If the device rejects the kernel, which is a defect of this crate or of the driver.
     pub async fn new(device: &Device) -> Result<Self, GpuError> {
         let [read, written] = [true, false].map(storage::<u32>);
-        let kinds = [uniform::<RecolorRange>(), read, Searched::Ids.binding_type(device), written];
+        let kinds = [uniform::<RecolorRange>(), read, searched(device, Searched::Ids), written];
         let checks = Checks::default();
         let layout = checks.create(device, || layout(device, "pinhole recolor", &kinds));
         let pipeline = pipeline(device, &recolor_kernel(), &[&layout], &checks);

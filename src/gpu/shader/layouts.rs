@@ -9,7 +9,7 @@ use crate::gpu::error::GpuError;
 use crate::gpu::passes::renderer_options::RendererOptions;
 use crate::gpu::shader::formats::{DEPTH_FORMAT, ID_FORMAT, NORMAL_FORMAT};
 use crate::gpu::shader::records;
-use crate::gpu::shader::textures::Searched;
+use crate::gpu::shader::textures::{Searched, reads_textures};
 
 /// The layouts of all bind groups of the kernels for primary rays.
 #[derive(Debug)]
@@ -46,7 +46,7 @@ impl Layouts {
             frame: layout("pinhole frame", &frame),
             brick: BrickKind::of(structures, primitives)
                 .map(|kind| {
-                    let (shapes, ids) = (storage::<records::Sphere>(true), Searched::Ids.binding_type(device));
+                    let (shapes, ids) = (storage::<records::Sphere>(true), searched(device, Searched::Ids));
                     let mut kinds = vec![uniform::<records::Brick>(), shapes, ids];
                     kinds.extend(of_structure(device, kind.structure));
                     (kind, layout("pinhole brick", &kinds))
@@ -110,7 +110,16 @@ fn of_structure(device: &Device, structure: Structure) -> Option<BindingType> {
         Structure::List => None,
         Structure::Tiles => Some(storage::<u32>(false)),
         Structure::RayQuery => Some(BindingType::AccelerationStructure { vertex_return: false }),
-        Structure::WideTree | Structure::Grid | Structure::NestedGrid => Some(Searched::Words.binding_type(device)),
+        Structure::WideTree | Structure::Grid | Structure::NestedGrid => Some(searched(device, Searched::Words)),
+    }
+}
+
+/// Binding type of data that the kernels of a device search.
+pub(crate) fn searched(device: &Device, searched: Searched) -> BindingType {
+    match searched {
+        _ if reads_textures(device) => storage_texture(searched.format(), wgpu::StorageTextureAccess::ReadOnly),
+        Searched::Ids => storage::<u32>(true),
+        Searched::Words => storage::<[u32; 4]>(true),
     }
 }
 
@@ -136,6 +145,6 @@ fn target(format: wgpu::TextureFormat) -> BindingType {
     storage_texture(format, wgpu::StorageTextureAccess::WriteOnly)
 }
 
-pub(super) fn storage_texture(format: wgpu::TextureFormat, access: wgpu::StorageTextureAccess) -> BindingType {
+fn storage_texture(format: wgpu::TextureFormat, access: wgpu::StorageTextureAccess) -> BindingType {
     BindingType::StorageTexture { access, format, view_dimension: wgpu::TextureViewDimension::D2 }
 }

@@ -5,9 +5,7 @@
 //! textures there, with the same values. Spheres stay in a buffer: few invocations of eight read them at a time, which buffers
 //! serve as quickly, and shading reads them, too. GPUs were not measured, and keep buffers.
 
-use wgpu::{BindingType, Device, DeviceType, StorageTextureAccess, TextureFormat};
-
-use super::layouts::{storage, storage_texture};
+use wgpu::{Device, DeviceType, TextureFormat};
 
 /// Data of a brick that kernels search.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -34,15 +32,6 @@ impl Searched {
         match self {
             Self::Ids => TextureFormat::R32Uint,
             Self::Words => TextureFormat::Rgba32Uint,
-        }
-    }
-
-    /// How the kernels of a device read it.
-    pub(crate) fn binding_type(self, device: &Device) -> BindingType {
-        match self {
-            _ if reads_textures(device) => storage_texture(self.format(), StorageTextureAccess::ReadOnly),
-            Self::Ids => storage::<u32>(true),
-            Self::Words => storage::<[u32; 4]>(true),
         }
     }
 
