@@ -101,6 +101,9 @@ impl<'a> Subject<'a> {
     /// direction n, the centre of the diagonal with the signs of n reaches as far as the box. So spheres in that box never
     /// reach farthest.
     pub(crate) fn outer_spheres(&self) -> Vec<[f32; 4]> {
+        if self.spheres.is_empty() {
+            return Vec::new();
+        }
         let signs: [[f32; 3]; 8] = std::array::from_fn(|k| [0, 1, 2].map(|i| if k >> i & 1 == 1 { 1.0 } else { -1.0 }));
         let along = |[a, b, c]: [f32; 3], [x, y, z, _]: [f32; 4]| a * x + b * y + c * z;
         let most_of = |_, chunk: &'a [[f32; 4]]| {
