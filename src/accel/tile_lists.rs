@@ -239,7 +239,7 @@ fn counts(seen: &[Seen], open: &[bool], columns: usize) -> Vec<Vec<u32>> {
 }
 
 impl Seen {
-    /// Whether the sphere may be seen in an open tile.
+    /// True if the sphere may be seen in an open tile.
     fn is_in_any(&self, open: &[bool], columns: usize) -> bool {
         let TileRange { first, last } = self.range;
         let mut rows = first[1].into()..usize::from(last[1]) + 1;

@@ -50,7 +50,7 @@ const NEAR_PLANE: f64 = 1e-4;
 /// The error of camera rays as a fraction of the lengths from which they are computed: 64 u.
 const RAY_PART: f64 = 1.0 / (1 << 18) as f64;
 
-/// The same for fisheye cameras, whose sines have larger errors: 512 u.
+/// The error of rays of fisheye cameras, whose sines have larger errors: 512 u.
 const FISHEYE_RAY_PART: f64 = 8.0 * RAY_PART;
 
 /// The numbers of a camera on a device, and the part of its film that is rendered.

@@ -185,7 +185,7 @@ impl Default for Sky {
 }
 
 impl SkyLight {
-    /// Whether an image of the sky gives light.
+    /// True if an image of the sky gives light.
     pub(crate) fn has_lit_image(&self) -> bool {
         matches!(self, Self::Image { environment, strength, .. } if *strength > 0.0 && environment.has_light())
     }

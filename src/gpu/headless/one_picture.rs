@@ -250,18 +250,14 @@ pub(crate) struct NearestDistances {
 /// Relative distance by which a box must be farther than a hit. It is more than the rounding of distances in f32.
 const FARTHER: f64 = 1.0 / (1 << 18) as f64;
 
-/// The distance of a hit from the camera, which is infinite for a miss.
-pub(crate) fn distance_of([t, id, _, distance]: &Hit) -> f32 {
-    match *id {
-        NO_ID => f32::INFINITY,
-        _ => f32::from_bits(*t) + f32::from_bits(*distance),
-    }
-}
-
 impl NearestDistances {
     /// The distances of hits that a kernel has written.
     pub(crate) fn new(size: [u32; 2], hits: &[Hit]) -> Self {
-        Self { size, distances: hits.iter().map(distance_of).collect() }
+        let distance = |[t, id, _, distance]: &Hit| match *id {
+            NO_ID => f32::INFINITY,
+            _ => f32::from_bits(*t) + f32::from_bits(*distance),
+        };
+        Self { size, distances: hits.iter().map(distance).collect() }
     }
 
     /// Whether the ray of every pixel of some workgroups misses a box or hits something before it. Always false for

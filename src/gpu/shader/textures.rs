@@ -22,7 +22,7 @@ pub(crate) const TEXELS_PER_ROW: usize = 1 << 12;
 /// The names in WGSL. Only kernels with `ids` search.
 const NAMES: [(&str, Searched); 3] = [("ids", Searched::Ids), ("balls", Searched::Words), ("nodes", Searched::Words)];
 
-/// Whether kernels of a device search textures.
+/// True if kernels of a device search textures.
 pub(crate) fn reads_textures(device: &Device) -> bool {
     device.adapter_info().device_type == DeviceType::Cpu
 }
@@ -63,7 +63,8 @@ pub(super) fn with_textures(source: &str) -> String {
         text += &line;
         text.push('\n');
     }
-    text + "fn texel_at(index: u32) -> vec2u {\n    return vec2u(index & 4095u, index >> 12u);\n}\n"
+    let (mask, shift) = (TEXELS_PER_ROW - 1, TEXELS_PER_ROW.trailing_zeros());
+    text + &format!("fn texel_at(index: u32) -> vec2u {{\n    return vec2u(index & {mask}u, index >> {shift}u);\n}}\n")
 }
 
 /// A line in which every element `name[...]` is read from a texture.
