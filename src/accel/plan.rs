@@ -54,6 +54,8 @@ pub struct AccelPlan {
     pub structure: Structure,
     /// Why this structure was chosen.
     pub reason: String,
+    /// The choice that was asked for.
+    pub choice: AccelChoice,
     /// The number of bricks.
     pub brick_count: usize,
     /// The limits for the grid of one brick.
@@ -69,7 +71,7 @@ impl AccelPlan {
     /// `binding_bytes`.
     #[must_use]
     pub fn new(spheres: &[[f32; 4]], choice: AccelChoice, binding_bytes: u64) -> Self {
-        Self::decided(spheres, binding_bytes, |statistics, crowd| decide(statistics, crowd, choice))
+        Self::decided(spheres, choice, binding_bytes, |statistics, crowd| decide(statistics, crowd, choice))
     }
 
     /// Makes a plan for the given structure, whatever it costs, for example to measure it. A grid may be built with two
@@ -81,11 +83,12 @@ impl AccelPlan {
             Structure::NestedGrid => Structure::Grid,
             structure => structure,
         };
-        Self::decided(spheres, binding_bytes, |_, _| (structure, "asked for".to_owned()))
+        Self::decided(spheres, structure.choice(), binding_bytes, |_, _| (structure, "asked for".to_owned()))
     }
 
     fn decided(
         spheres: &[[f32; 4]],
+        choice: AccelChoice,
         binding_bytes: u64,
         decide: impl FnOnce(&SceneStatistics, Option<&Crowd>) -> (Structure, String),
     ) -> Self {
@@ -103,7 +106,7 @@ impl AccelPlan {
         let largest = most_in_brick(structure, count, brick_count);
         let budget = grid_budget(structure, largest, binding_bytes);
         let (buffers, box_margin) = (Vec::new(), 1.0);
-        let mut plan = Self { statistics, crowd, structure, reason, brick_count, budget, box_margin, buffers };
+        let mut plan = Self { statistics, crowd, structure, reason, choice, brick_count, budget, box_margin, buffers };
         plan.buffers = plan.list_buffers();
         plan
     }
@@ -221,10 +224,10 @@ fn decide(statistics: &SceneStatistics, crowd: Option<&Crowd>, choice: AccelChoi
         AccelChoice::Grid => asked(Structure::Grid),
         AccelChoice::Tree => asked(Structure::WideTree),
         AccelChoice::RayQuery => asked(Structure::RayQuery),
-        AccelChoice::Auto if count <= FEW => {
+        AccelChoice::Auto | AccelChoice::Tiles if count <= FEW => {
             (Structure::List, format!("for up to {FEW} spheres, no structure is worth its cost"))
         }
-        AccelChoice::Auto => match crowd.filter(|crowd| crowd.is_lost_in_margin(statistics)) {
+        AccelChoice::Auto | AccelChoice::Tiles => match crowd.filter(|crowd| crowd.is_lost_in_margin(statistics)) {
             Some(Crowd { outliers, .. }) => (
                 Structure::WideTree,
                 format!(

@@ -18,6 +18,9 @@ pub enum AccelChoice {
     /// A structure that the driver builds from boxes and searches by ray queries, in hardware or not. This is an
     /// experiment for devices that support ray queries and are opened with them.
     RayQuery,
+    /// Lists of spheres for each tile of a single picture by one ray for each pixel. For all other work, it means what
+    /// [`AccelChoice::Auto`] does, but [`RenderPlan::check`](crate::gpu::RenderPlan::check) refuses other pictures.
+    Tiles,
 }
 
 impl fmt::Display for AccelChoice {
@@ -28,6 +31,7 @@ impl fmt::Display for AccelChoice {
             Self::Tree => "tree",
             Self::List => "list",
             Self::RayQuery => "query",
+            Self::Tiles => "tiles",
         })
     }
 }
@@ -74,7 +78,7 @@ impl Structure {
     pub const fn choice(self) -> AccelChoice {
         match self {
             Self::List => AccelChoice::List,
-            Self::Tiles => AccelChoice::Auto,
+            Self::Tiles => AccelChoice::Tiles,
             Self::Grid | Self::NestedGrid => AccelChoice::Grid,
             Self::WideTree => AccelChoice::Tree,
             Self::RayQuery => AccelChoice::RayQuery,

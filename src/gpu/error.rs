@@ -107,6 +107,12 @@ pub enum GpuError {
         "this device has no ray queries, or was opened without them (`HeadlessOptions::ray_query`); choose another structure"
     )]
     NoRayQuery,
+    /// Tiles were asked for, but the picture cannot have any.
+    #[error(
+        "tiles are lists of spheres for one picture: they need one ray for each pixel, a camera that is pinhole, \
+         orthographic, thin lens or fisheye, and no other picture of the same scene; choose another structure"
+    )]
+    NoTiles,
     /// A ray needed more loop iterations than a kernel may execute on this device.
     #[error(
         "a ray needs more loop iterations than this device allows; choose the structure `list`, which is slow but \

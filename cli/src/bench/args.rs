@@ -13,7 +13,8 @@ use pinhole_data::load::Format;
 #[derive(Debug, Args)]
 #[command(after_help = "Each scene is measured with the structure that --accel auto chooses, and with the \
     other of grid and tree. Rays go through the centers of all pixels. \
-    Times are medians. The peak of the memory is that of the whole process so far. Exit codes are those of \
+    Times are medians. Tiles are those of a \
+    single picture: their lists are made for each, and count as building. The peak of the memory is that of the whole process so far. Exit codes are those of \
     `render`.\n\n\
     JSON: `version`, `adapter`, `reps`, `scenes` (name, spheres, width, height, load_seconds, runs, note); a \
     run has choice, structure, reason, build_seconds, upload_seconds, first_render_seconds, trace_wall, \

@@ -14,14 +14,12 @@ use crate::render::with_scene::watch_upload;
 use crate::terminal::failure::Failure;
 use crate::terminal::progress::{self, answer, tell};
 use crate::terminal::text::json;
-use crate::terminal::{interrupt, memory, threads};
+use crate::terminal::{interrupt, memory, profile, threads};
 use pinhole::accel::{AccelChoice, Structure};
 use pinhole::camera::View;
 use pinhole::camera::film::Film;
 use pinhole::generate::{BYTES_PER_SPHERE, Standard};
-use pinhole::gpu::{
-    GpuError, Headless, PictureRequest, RenderPlan, SceneBuffers, StructurePlans, TraceTime, UploadStep, Wait,
-};
+use pinhole::gpu::{GpuError, Headless, PictureRequest, RenderPlan, TraceTime, UploadStep, Wait};
 use pinhole::image::LayerSet;
 use pinhole::image::color::LinearRgb;
 use pinhole::internals::text::one_line;
@@ -46,6 +44,9 @@ pub(crate) fn run(args: &BenchArgs) -> Result<(), Failure> {
         sources.collect::<Result<Vec<_>, _>>()?
     };
     let adapter = WantedAdapter::new(&args.adapter).for_structures(args.accel.iter().copied());
+    if args.accel.contains(&AccelChoice::Tiles) {
+        profile::begin();
+    }
     threads::start()?;
     let headless = adapter.open_any()?;
     let mut report = BenchReport {
@@ -107,51 +108,32 @@ fn measure(
     let started = Instant::now();
     let (view, settings) = (View::new(camera.as_ref(), *film), RenderSettings::default());
     let request = PictureRequest {
-        is_only: false,
+        is_only: choice == AccelChoice::Tiles,
         scene: spheres,
         view,
         settings: &settings,
         layers: LayerSet::COLOR,
         host_bytes_per_pixel: memory::ENCODING_BYTES_PER_PIXEL,
     };
-    let accel = headless.plan_accel(spheres, choice);
     let reps = args.reps;
-    let structures = StructurePlans { accel, occluders: None };
-    let plan = RenderPlan::new(&request, structures, &headless.device_limits());
+    let plan = headless.plan(&request, choice);
     plan.check(&headless.device().limits(), memory::available()).map_err(failed)?;
     tell(format_args!(
         "{name}: {}; at most {} of memory on the device, and {} on the host in addition to the scene and the driver",
-        plan.accel.structure.name(),
+        plan.structure().name(),
         memory::readable(plan.device_bytes),
         memory::readable(plan.host_bytes),
     ));
-    let mut times = UploadTimes { build: Duration::ZERO, upload: Duration::ZERO, started, step: None };
-    let uploaded = interrupt::on_device(|| {
-        headless
-            .upload_planned(spheres, &plan.structures(), &mut |progress| {
-                times.begin(Some(progress.step));
-                watch_upload(plan.accel.structure.name(), progress)
-            })
-            .wait()
-    })?;
-    times.begin(None);
-    let buffers = uploaded.map_err(failed)?;
-    let (UploadTimes { build, upload, .. }, structure) = (times, buffers.structure());
-
-    progress::stage(format!("{name}: first render, {}", structure.name()));
-    let started = Instant::now();
-    let first = interrupt::on_device(|| {
-        let watch = &mut |_: &_| interrupt::decide();
-        headless.render_uploaded(&buffers, &view, &settings, LayerSet::COLOR, watch).wait()
-    })?;
-    first.map(drop).map_err(failed)?;
-    let first_render = started.elapsed();
-
-    let times = repeat(headless, &buffers, name, &view, reps)?;
-    let longest = times.iter().map(|time| time.longest).max().unwrap_or_default();
+    let measured = if plan.by_tiles {
+        measure_tiles(headless, scene, &request, &plan, (started.elapsed(), reps))?
+    } else {
+        measure_structure(headless, scene, &request, &plan, (started, reps))?
+    };
+    let Measured { structure, build, upload, first_render, times, scene_bytes } = measured;
+    let longest = times.iter().map(|time| time.longest).max().filter(|longest| *longest > Duration::ZERO);
     // The scene has the size of the built structure, and the frame the size that was planned.
     let frame = plan.tile_buffers.iter().chain(&plan.tile_textures).map(|buffer| buffer.bytes);
-    let device_bytes = buffers.bytes() + frame.sum::<u64>();
+    let device_bytes = scene_bytes + frame.sum::<u64>();
     let clock = AdapterReport::of(headless.adapter_info()).clock();
     let rays = film.pixel_count();
     // The clock of a software device does not measure the work.
@@ -163,7 +145,7 @@ fn measure(
     Ok(RunReport {
         choice: choice.to_string(),
         structure: structure.name(),
-        reason: plan.accel.reason.clone(),
+        reason: plan.reason().to_owned(),
         build_seconds: build.as_secs_f64(),
         upload_seconds: upload.as_secs_f64(),
         first_render_seconds: first_render.as_secs_f64(),
@@ -173,11 +155,92 @@ fn measure(
         rays,
         rays_per_second: rate,
         submissions: times.iter().map(|time| time.submissions).max().unwrap_or(0),
-        longest_submission_seconds: longest.as_secs_f64(),
+        longest_submission_seconds: longest.as_ref().map(Duration::as_secs_f64),
         device_bytes,
         device_bytes_per_sphere: (!spheres.is_empty()).then(|| device_bytes as f64 / spheres.len() as f64),
         peak_memory_bytes: memory::peak_bytes(),
     })
+}
+
+/// The measurements of a structure.
+struct Measured {
+    structure: Structure,
+    build: Duration,
+    upload: Duration,
+    first_render: Duration,
+    times: Vec<TraceTime>,
+    /// Bytes of the scene on the device.
+    scene_bytes: u64,
+}
+
+/// Builds a structure, and traces rays with it several times.
+fn measure_structure(
+    headless: &Headless,
+    BenchScene { name, scene, .. }: &BenchScene,
+    PictureRequest { view, settings, layers, .. }: &PictureRequest<'_>,
+    plan: &RenderPlan,
+    (started, reps): (Instant, u32),
+) -> Result<Measured, Failure> {
+    let failed = |error: GpuError| explained(headless, &error);
+    let mut times = UploadTimes { build: Duration::ZERO, upload: Duration::ZERO, started, step: None };
+    let uploaded = interrupt::on_device(|| {
+        headless
+            .upload_planned(scene, &plan.structures(), &mut |progress| {
+                times.begin(Some(progress.step));
+                watch_upload(plan.accel.structure.name(), progress)
+            })
+            .wait()
+    })?;
+    times.begin(None);
+    let buffers = uploaded.map_err(failed)?;
+    let (UploadTimes { build, upload, .. }, structure) = (times, buffers.structure());
+    progress::stage(format!("{name}: first render, {}", structure.name()));
+    let started = Instant::now();
+    let first = interrupt::on_device(|| {
+        let watch = &mut |_: &_| interrupt::decide();
+        headless.render_uploaded(&buffers, view, settings, *layers, watch).wait()
+    })?;
+    first.map(drop).map_err(failed)?;
+    let first_render = started.elapsed();
+    let times =
+        repeat(name, reps, || interrupt::on_device(|| headless.measure(&buffers, view).wait())?.map_err(failed))?;
+    Ok(Measured { structure, build, upload, first_render, times, scene_bytes: buffers.bytes() })
+}
+
+/// Renders a picture by tiles several times. All times but that of the first picture are of the device's profile.
+fn measure_tiles(
+    headless: &Headless,
+    BenchScene { name, .. }: &BenchScene,
+    request: &PictureRequest<'_>,
+    plan: &RenderPlan,
+    (planning, reps): (Duration, u32),
+) -> Result<Measured, Failure> {
+    let picture = || {
+        let watch = &mut |_: &_| interrupt::decide();
+        let watch_lists = &mut |progress: &_| watch_upload(plan.structure().name(), progress);
+        let rendered = interrupt::on_device(|| headless.render_planned(request, plan, watch_lists, watch).wait())?;
+        rendered.map(drop).map_err(|error| explained(headless, &error))
+    };
+    progress::stage(format!("{name}: first render, {}", plan.structure().name()));
+    let started = Instant::now();
+    picture()?;
+    let first_render = started.elapsed();
+    let (mut builds, mut uploads) = (Vec::new(), Vec::new());
+    let times = repeat(name, reps, || {
+        let [lists, copies, (trace, submissions)] =
+            profile::spent([&["divide", "build"], &["upload"], &["trace"]], picture)?;
+        builds.push(lists.0);
+        uploads.push(copies.0);
+        let mut time = TraceTime::default();
+        (time.wall, time.submissions) = (trace, submissions as u32);
+        Ok(time)
+    })?;
+    let [build, upload] = [builds, uploads].map(|mut times| {
+        times.sort_unstable();
+        times.get(times.len() / 2).copied().unwrap_or_default()
+    });
+    let scene_bytes = plan.scene_buffers.iter().map(|buffer| buffer.bytes).sum();
+    Ok(Measured { structure: plan.structure(), build: planning + build, upload, first_render, times, scene_bytes })
 }
 
 /// Total times of building bricks and of copying them to the device. Planning counts as building.
@@ -201,17 +264,14 @@ impl UploadTimes {
 }
 
 fn repeat(
-    headless: &Headless,
-    buffers: &SceneBuffers,
     name: &str,
-    view: &View<'_>,
     reps: u32,
+    mut measure: impl FnMut() -> Result<TraceTime, Failure>,
 ) -> Result<Vec<TraceTime>, Failure> {
     (0..reps)
         .map(|rep| {
             progress::stage(format!("{name}: tracing, {} of {reps}", rep + 1));
-            let time = interrupt::on_device(|| headless.measure(buffers, view).wait())?;
-            time.map_err(|error| explained(headless, &error))
+            measure()
         })
         .collect()
 }

@@ -60,7 +60,8 @@ pub(crate) struct RunReport {
     /// Rays per second, from the median time by this clock.
     pub(crate) rays_per_second: Option<f64>,
     pub(crate) submissions: u32,
-    pub(crate) longest_submission_seconds: f64,
+    /// Not known for tiles.
+    pub(crate) longest_submission_seconds: Option<f64>,
     /// Bytes of device memory for the scene and the frame.
     pub(crate) device_bytes: u64,
     pub(crate) device_bytes_per_sphere: Option<f64>,
@@ -163,7 +164,7 @@ impl RunReport {
             self.device_bytes_per_sphere.map_or_else(dash, |bytes| format!("{bytes:.1}")),
             self.peak_memory_bytes.map_or_else(dash, readable),
             self.submissions.to_string(),
-            milliseconds(self.longest_submission_seconds),
+            self.longest_submission_seconds.map_or_else(dash, milliseconds),
         ]
     }
 }

@@ -80,6 +80,11 @@ pub(crate) const STRUCTURES: &[(&str, &str, AccelChoice)] = &[
         "Ray queries of the driver, in hardware or not, where it has them: an experiment of wgpu; see `verify`",
         AccelChoice::RayQuery,
     ),
+    (
+        "tiles",
+        "Lists of spheres for the tiles of one picture by one ray per pixel, which `auto` makes on software devices",
+        AccelChoice::Tiles,
+    ),
 ];
 
 #[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]

@@ -6,11 +6,11 @@ use anyhow::{Context, Error, Result};
 use clap::builder::{PossibleValue, PossibleValuesParser, TypedValueParser};
 
 use crate::flags::settings::Given;
-use crate::input::read_file::{check_regular, is_standard_input, read as read_bytes};
+use crate::input::read_file::{check_regular, is_standard_input, open, read as read_bytes};
 use crate::terminal::failure::Failure;
 use crate::terminal::memory;
 use pinhole::LinearRgb;
-use pinhole_data::load::{Dataset, FORMATS, Format, LoadError, LoadErrorKind, Options, Place, Trajectory};
+use pinhole_data::load::{Dataset, FORMATS, FileRows, Format, LoadError, LoadErrorKind, Options, Place, Trajectory};
 use pinhole_figure::scene_file::SceneFile;
 
 /// The options for a data file, from flags or from a scene file.
@@ -136,8 +136,15 @@ pub(crate) fn named(path: &Path, error: LoadError) -> Error {
 }
 
 fn read_whole(path: &Path, format: &Format, options: &DataOptions) -> Result<Dataset> {
-    let bytes = &read_bytes(path)?;
     let file_name = || path.display().to_string();
+    if !is_standard_input(path) {
+        let (file, options) = (open(path)?, options.to_read());
+        if let Some(rows) = FileRows::find(format, &file, &options).with_context(file_name)? {
+            memory::check_spheres(&format!("{}: its spheres need", path.display()), rows.bytes())?;
+            return rows.read().with_context(file_name);
+        }
+    }
+    let bytes = &read_bytes(path)?;
     let extra = format.extra_bytes(bytes).with_context(file_name)?;
     if extra > 0 {
         let what = format!("{}: reading an array of {extra} bytes needs", path.display());

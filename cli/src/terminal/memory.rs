@@ -41,11 +41,13 @@ const SMALL: u64 = 1 << 24;
 /// Refuses a file of `size` bytes if there is not enough memory for it and for its spheres. `what` is the start of the
 /// sentence, up to the number of bytes.
 pub(crate) fn check_reading(what: &str, size: u64) -> Result<()> {
-    if size <= SMALL {
-        return Ok(());
-    }
     // Three numbers of an array become four numbers of a sphere.
-    check_bytes(what, size.saturating_mul(7) / 3, "a smaller file")
+    if size > SMALL { check_spheres(what, size.saturating_mul(7) / 3) } else { Ok(()) }
+}
+
+/// Refuses a file whose spheres take so many bytes, if there is not enough memory for them.
+pub(crate) fn check_spheres(what: &str, bytes: u64) -> Result<()> {
+    if bytes > SMALL { check_bytes(what, bytes, "a smaller file") } else { Ok(()) }
 }
 
 /// Returns the bytes that are free for this program; `None` if they are not known, so that only allocations can fail.

@@ -34,8 +34,34 @@ pub(crate) fn of_device() -> Option<Profile> {
 /// Begins the profile if the flag is given.
 pub(crate) fn start(args: &ProfileArgs) {
     if args.profile {
-        PROFILE.get_or_init(Profile::default);
+        begin();
     }
+}
+
+/// Begins the profile, so that it can be read.
+pub(crate) fn begin() {
+    PROFILE.get_or_init(Profile::default);
+}
+
+/// Runs `work`, and returns the time of the phases and passes of each list of names, and how many there were.
+pub(crate) fn spent<const N: usize, E>(
+    names: [&[&str]; N],
+    work: impl FnOnce() -> Result<(), E>,
+) -> Result<[(Duration, u64); N], E> {
+    let sums = || {
+        let totals = PROFILE.get().map(Profile::totals).unwrap_or_default();
+        names.map(|names| {
+            let named = totals.iter().filter(|total| names.contains(&total.name));
+            named.fold((Duration::ZERO, 0), |(own, calls), total| (own + total.own, calls + total.calls))
+        })
+    };
+    let before = sums();
+    work()?;
+    let mut spent = sums();
+    for (after, before) in spent.iter_mut().zip(before) {
+        *after = (after.0 - before.0, after.1 - before.1);
+    }
+    Ok(spent)
 }
 
 /// Prints the table, if a profile was asked for.

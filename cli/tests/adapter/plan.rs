@@ -98,6 +98,8 @@ fn same_picture(_: &'static Headless) {
         assert!(output.status.success(), "{flags}: {}", String::from_utf8_lossy(&output.stderr));
         assert!(output.stdout == picture, "{flags}");
     }
+    let [grid, tiles] = ["grid", "tiles"].map(|accel| run(&folder, &format!("{view} --style fast --accel {accel}")));
+    assert!(tiles.status.success() && tiles.stdout == grid.stdout);
 }
 
 fn bench(headless: &'static Headless) {
@@ -117,6 +119,17 @@ fn bench(headless: &'static Headless) {
     assert!(scene["note"].as_str().unwrap().starts_with("auto chose "));
     let text = stdout(&folder, "bench a.npy --reps 1 --size 32x24 --accel list");
     assert!(text.contains("list: list") && text.contains("Mrays/s"), "{text}");
+    let text = stdout(&folder, "bench a.npy --reps 1 --size 32x24 --accel tiles");
+    assert!(text.contains("tiles: tiles"), "{text}");
+    for refused in ["render a.npy --accel tiles -o out.png --style studio", "verify a.npy --accel tiles"] {
+        let output = run(&folder, refused);
+        let line = String::from_utf8(output.stderr).unwrap();
+        assert!(
+            line.contains("tiles are lists of spheres for one picture: they need one ray for each pixel"),
+            "{line}"
+        );
+        assert_eq!(output.status.code(), Some(1), "{refused}");
+    }
 }
 
 /// Each of 16 million rays tests 30,000 spheres. The eye is among the spheres, so no ray ends early.

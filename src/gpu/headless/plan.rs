@@ -2,7 +2,7 @@
 
 use wgpu::Limits;
 
-use crate::accel::{AccelPlan, PlannedBuffer, Structure};
+use crate::accel::{AccelChoice, AccelPlan, PlannedBuffer, Structure};
 use crate::camera::View;
 use crate::camera::film::Film;
 use crate::gpu::device_shape::DeviceLimits;
@@ -102,7 +102,12 @@ impl RenderPlan {
         let layers = if keeps_rays { LayerSet::DATA } else { request.layers };
         let (limits, film) = (&device.limits, &request.view.film);
         let may_be = !keeps_rays && request.is_only && request.settings.integrator.is_primary();
-        let by_tiles = may_be && tile_plan::suits(scene, &request.view, &accel, device);
+        let by_tiles = may_be
+            && match accel.choice {
+                AccelChoice::Auto => tile_plan::suits(scene, &request.view, &accel, device),
+                AccelChoice::Tiles => tile_plan::of_picture(scene, &request.view, &accel).is_some(),
+                _ => false,
+            };
         let tile_size = match by_tiles {
             true => tile_plan::part_size(&request.view, device),
             false => tile_size(limits, device.shape(), film, keeps_rays),
@@ -168,7 +173,11 @@ impl RenderPlan {
     /// Returns the reason for the choice of the structure.
     #[must_use]
     pub fn reason(&self) -> &str {
-        if self.by_tiles { "a single picture by one ray for each pixel" } else { &self.accel.reason }
+        match self.accel.choice {
+            AccelChoice::Auto if self.by_tiles => "a single picture by one ray for each pixel",
+            AccelChoice::Tiles if self.by_tiles => "asked for",
+            _ => &self.accel.reason,
+        }
     }
 
     /// Returns the number of bricks, or of the first of them if the picture is rendered by tiles, where more are made for
@@ -196,8 +205,12 @@ impl RenderPlan {
     /// `None`, because the free memory is not known, only the limits are checked.
     ///
     /// # Errors
-    /// [`GpuError::Limit`] with the first limit that is too low; [`GpuError::HostMemory`] if the memory is too small.
+    /// [`GpuError::Limit`] with the first limit that is too low; [`GpuError::HostMemory`] if the memory is too small;
+    /// [`GpuError::NoTiles`] if tiles were asked for, which this picture cannot have.
     pub fn check(&self, limits: &Limits, memory: Option<u64>) -> Result<(), GpuError> {
+        if self.accel.choice == AccelChoice::Tiles && !self.by_tiles && self.accel.statistics.count > 0 {
+            return Err(GpuError::NoTiles);
+        }
         let binding = ("max_storage_buffer_binding_size", limits.max_storage_buffer_binding_size);
         let buffer = ("max_buffer_size", limits.max_buffer_size);
         let bound = self.scene_buffers.iter().chain(&self.tile_buffers);

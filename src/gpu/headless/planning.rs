@@ -33,7 +33,7 @@ impl Headless {
         let accel = self.plan_accel(scene, choice);
         let opaque = settings.studio_parameters().and_then(|_| scene.opaque());
         let occluders = opaque.map(|opaque| self.plan_accel(&opaque, choice));
-        let is_only = request.is_only && choice == AccelChoice::Auto && !self.leaves_loops_wrongly();
+        let is_only = request.is_only && (choice == AccelChoice::Tiles || !self.leaves_loops_wrongly());
         let request = PictureRequest { is_only, ..*request };
         RenderPlan::new(&request, StructurePlans { accel, occluders }, &self.device_limits())
     }

@@ -62,17 +62,22 @@ fn space_of(scene_origin: glam::DVec3, plan: &AccelPlan) -> SceneSpace {
 ///
 /// Only software devices were measured: there, one picture takes less time than building the structure for it.
 pub(crate) fn suits(scene: &Scene, view: &View<'_>, plan: &AccelPlan, device: &DeviceLimits) -> bool {
-    let kinds = [CameraKind::Pinhole, CameraKind::Orthographic, CameraKind::ThinLens, CameraKind::Fisheye];
-    if device.device_type != wgpu::DeviceType::Cpu || !kinds.contains(&view.camera.kind()) || scene.len() <= FEW {
+    if device.device_type != wgpu::DeviceType::Cpu || scene.len() <= FEW {
         return false;
     }
-    let film = &view.film;
-    let size = [film.width(), film.height()];
-    let tile = Tile { origin: [0, 0], size, in_target: [0, 0] };
-    let space = space_of(scene.origin(), plan);
-    let tiles = tile_view(view, &space, plan.statistics.margin(), tile);
     let most = PLACES_PER_SPHERE.max(FEW_PLACES / scene.len() as f64);
-    tiles.is_some_and(|tiles| mean_tiles(&tiles, scene.spheres()) <= most)
+    of_picture(scene, view, plan).is_some_and(|tiles| mean_tiles(&tiles, scene.spheres()) <= most)
+}
+
+/// The tiles of a whole picture; `None` if it cannot have any.
+pub(crate) fn of_picture(scene: &Scene, view: &View<'_>, plan: &AccelPlan) -> Option<TileView> {
+    let kinds = [CameraKind::Pinhole, CameraKind::Orthographic, CameraKind::ThinLens, CameraKind::Fisheye];
+    if !kinds.contains(&view.camera.kind()) || scene.is_empty() {
+        return None;
+    }
+    let size = [view.film.width(), view.film.height()];
+    let tile = Tile { origin: [0, 0], size, in_target: [0, 0] };
+    tile_view(view, &space_of(scene.origin(), plan), plan.statistics.margin(), tile)
 }
 
 /// The size of the parts of a picture that are rendered one after the other. The hits of each are in one buffer.

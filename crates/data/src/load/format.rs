@@ -36,6 +36,8 @@ pub struct Format {
     /// Whether the first bytes of a file look like this format.
     pub(super) starts: fn(&[u8]) -> bool,
     pub(super) extra_bytes: fn(&[u8]) -> Result<u64, LoadError>,
+    /// The plain array of spheres of a file, by its first bytes and its length.
+    pub(super) rows: fn(&[u8], u64, &Options) -> Option<Rows>,
 }
 
 #[derive(Clone, Copy, Debug)]
@@ -96,6 +98,40 @@ pub(super) struct FrameIndex {
     pub(super) notes: Vec<String>,
     /// The reader of the frames, if they are binary data.
     pub(super) reader: Option<Box<dyn FrameReader>>,
+}
+
+/// The type of the numbers of an array.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(super) enum Numbers {
+    F32,
+    F64,
+}
+
+/// The place of an array of little-endian numbers in a file, row by row: x, y, z, and perhaps the radius of each sphere.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(super) struct Rows {
+    /// Byte of the first row.
+    pub(super) first: u64,
+    pub(super) count: usize,
+    pub(super) have_radii: bool,
+    pub(super) numbers: Numbers,
+}
+
+impl Rows {
+    /// Number of bytes of the rows in the file; `None` if there are more than any file has.
+    pub(super) fn bytes(&self) -> Option<u64> {
+        let width = [3, 4][usize::from(self.have_radii)] * self.numbers.width();
+        (self.count as u64).checked_mul(width)
+    }
+}
+
+impl Numbers {
+    pub(super) const fn width(self) -> u64 {
+        match self {
+            Self::F32 => 4,
+            Self::F64 => 8,
+        }
+    }
 }
 
 /// Options for reading a file of spheres.

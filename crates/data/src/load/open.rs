@@ -6,6 +6,7 @@ use std::path::{Path, PathBuf};
 
 use super::dataset::Dataset;
 use super::error::{LoadError, LoadErrorKind, Place};
+use super::file_rows::FileRows;
 use super::format::{Format, FrameIndex, Frames, Options, ReadMethod, read_from_memory};
 use super::source::{Source, decompressed, is_gzip, start_of};
 use super::topology::Topology;
@@ -23,6 +24,11 @@ pub fn open(path: impl AsRef<Path>, options: &Options) -> Result<Dataset, LoadEr
     if format.has_frames() {
         let frames = Trajectory::open_up_to(path, &options.clone().with_format(format))?;
         return frames.into_frame(options.frame.unwrap_or_default());
+    }
+    if let Source::Plain(reader) = &source
+        && let Some(rows) = FileRows::find(format, reader.get_ref(), options)?
+    {
+        return rows.read();
     }
     let mut bytes = Vec::new();
     source.read_to_end(&mut bytes).map_err(failed)?;

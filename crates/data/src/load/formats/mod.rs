@@ -38,6 +38,7 @@ const RAW: Format = Format {
     is_text: false,
     starts: |_| false,
     extra_bytes: |_| Ok(0),
+    rows: |_, _, _| None,
 };
 
 /// The facts about text formats.
@@ -159,6 +160,7 @@ pub static FORMATS: &[Format] = &[
         may_lack_radii: true,
         starts: |bytes| bytes.starts_with(b"\x93NUMPY"),
         extra_bytes: |bytes| Ok(npy::extra_bytes(bytes)),
+        rows: npy::rows_of,
         ..RAW
     },
     Format {
@@ -199,7 +201,7 @@ pub static FORMATS: &[Format] = &[
         starts: vtk::starts,
         ..RAW
     },
-    RAW,
+    Format { rows: |_, size, _| raw::rows_of(size), ..RAW },
 ];
 
 impl Format {

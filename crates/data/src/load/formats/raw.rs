@@ -3,6 +3,7 @@
 use std::collections::TryReserveError;
 
 use crate::load::error::LoadError;
+use crate::load::format::{Numbers, Rows};
 use pinhole::internals::parallel;
 use pinhole::scene::sphere_array::SphereArray;
 
@@ -26,6 +27,13 @@ pub fn read_spheres(bytes: &[u8]) -> Result<SphereArray, LoadError> {
     let spheres = rows(bytes, layout, f32::from_le_bytes, 0.0);
     let memory = |_| LoadError::new(format!("there is not enough memory for {count} spheres"));
     spheres.map(SphereArray::F32).map_err(memory)
+}
+
+/// The rows of a file of `size` bytes, if they are whole.
+pub(super) fn rows_of(size: u64) -> Option<Rows> {
+    let count = usize::try_from(size / SPHERE_BYTES as u64).ok()?;
+    let rows = Rows { first: 0, count, have_radii: true, numbers: Numbers::F32 };
+    (rows.bytes() == Some(size)).then_some(rows)
 }
 
 /// The order in which the numbers of a table are stored.

@@ -9,7 +9,7 @@ use std::collections::TryReserveError;
 use super::raw::{Layout, rows};
 use crate::load::dataset::Dataset;
 use crate::load::error::{LoadError, LoadErrorKind};
-use crate::load::format::Options;
+use crate::load::format::{Numbers, Options, Rows};
 use crate::load::numbers::component_names;
 use crate::load::table::{Table, TableColumn};
 use dtype::{Dtype, Place};
@@ -55,6 +55,28 @@ pub(super) fn extra_bytes(bytes: &[u8]) -> u64 {
         Elements::Plain(_) => 0,
         Elements::Structures { fields, .. } => 8 * (array.rows() * fields.len()) as u64,
     })
+}
+
+/// The rows of a file of `size` bytes, if it is a plain array of spheres that any machine reads alike.
+pub(super) fn rows_of(head: &[u8], size: u64, options: &Options) -> Option<Rows> {
+    let (Header { elements: Elements::Plain(name), fortran_order: false, shape }, rest) = header::split(head).ok()?
+    else {
+        return None;
+    };
+    let [count, columns @ 3..=4] = *shape else { return None };
+    let numbers = match name.as_str() {
+        "<f4" => Numbers::F32,
+        "<f8" => Numbers::F64,
+        _ => return None,
+    };
+    let rows = Rows {
+        first: (head.len() - rest.len()) as u64,
+        count: usize::try_from(count).ok()?,
+        have_radii: columns == 4,
+        numbers,
+    };
+    let is_whole = rows.bytes().and_then(|bytes| bytes.checked_add(rows.first)) == Some(size);
+    (is_whole && !(rows.have_radii && options.radius.is_some())).then_some(rows)
 }
 
 /// An array whose data are as long as its header says.
