@@ -9,6 +9,7 @@ use crate::flags::common::{AccelArgs, AdapterArgs, InputArgs};
 use crate::flags::settings::{LOOK, SettingArgs};
 use crate::input::{Input, Source};
 use crate::render;
+use crate::render::MOST_BY_TILES;
 use crate::render::device::{AdapterReport, WantedAdapter, explained};
 use crate::render::views::views_of;
 use crate::terminal::failure::Failure;
@@ -133,7 +134,7 @@ pub(crate) fn run(args: &PlanArgs) -> Result<(), Failure> {
     progress::stage("planning");
     let choice = args.accel.accel.unwrap_or_default();
     let views = views_of(&input, input.film);
-    let is_only = input.bricks.is_none() && views.len() == 1;
+    let is_only = input.bricks.is_none() && views.len() <= MOST_BY_TILES;
     let plan = render::plan(&headless, &input, &views, layers, choice, is_only);
     let available = memory::available();
     let verdict = plan.check(&headless.device().limits(), available).map_err(|error| explained(&headless, &error));

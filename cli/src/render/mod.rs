@@ -240,24 +240,30 @@ fn judged(pictures: Vec<(Picture, Watching)>, total: u32, is_stopped: bool) -> V
     pictures.into_iter().map(|(picture, _)| picture.image).collect()
 }
 
+/// The most pictures of one scene, such as those of two eyes, each of which is rendered as if there were no other.
+#[cfg(feature = "gpu")]
+pub(crate) const MOST_BY_TILES: usize = 2;
+
 #[cfg(feature = "gpu")]
 fn on_gpu(headless: &Headless, shot: &Shot<'_>, choice: AccelChoice) -> Result<Vec<Image>, Failure> {
     let Shot { input, views, layers, stop_rule, .. } = *shot;
     let Input { scene, settings, .. } = input;
     let is_lit = !settings.integrator.is_primary();
     let pixels = shot.film().pixel_count();
-    let plan = |choice| plan(headless, input, views, layers, choice, views.len() == 1);
+    let plan = |choice| plan(headless, input, views, layers, choice, views.len() <= MOST_BY_TILES);
     let rendered = with_structures(headless, choice, plan, |plan| {
         let mut too_short = None;
         let (done, is_stopped) = interrupt::keeping(|| {
-            if let (false, [view]) = (is_lit, views) {
-                let watching = Watching::new(stop_rule, 1, pixels, false);
-                let name = plan.structure().name();
-                let upload_watch = &mut |progress: &_| watch_upload(name, progress);
-                let watch = &mut |progress: &_| watching.decide(progress);
-                let request = PictureRequest::new(scene, view, settings, layers);
-                let picture = headless.render_planned(&request, plan, upload_watch, watch).wait()?;
-                return Ok(vec![(picture, watching)]);
+            if plan.by_tiles || (!is_lit && views.len() == 1) {
+                let pictures = views.iter().map(|view| {
+                    let watching = Watching::new(stop_rule, views.len(), pixels, false);
+                    let name = plan.structure().name();
+                    let upload_watch = &mut |progress: &_| watch_upload(name, progress);
+                    let watch = &mut |progress: &_| watching.decide(progress);
+                    let request = PictureRequest::new(scene, view, settings, layers);
+                    Ok((headless.render_planned(&request, plan, upload_watch, watch).wait()?, watching))
+                });
+                return pictures.collect::<Result<Vec<_>, GpuError>>();
             }
             let buffers = upload(headless, scene, plan)?;
             progress::stage("preparing");

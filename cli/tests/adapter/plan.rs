@@ -98,8 +98,10 @@ fn same_picture(_: &'static Headless) {
         assert!(output.status.success(), "{flags}: {}", String::from_utf8_lossy(&output.stderr));
         assert!(output.stdout == picture, "{flags}");
     }
-    let [grid, tiles] = ["grid", "tiles"].map(|accel| run(&folder, &format!("{view} --style fast --accel {accel}")));
-    assert!(tiles.status.success() && tiles.stdout == grid.stdout);
+    for style in ["--style fast", "--style fast --separation 0.1"] {
+        let [grid, tiles] = ["grid", "tiles"].map(|accel| run(&folder, &format!("{view} {style} --accel {accel}")));
+        assert!(tiles.status.success() && tiles.stdout == grid.stdout, "{style}");
+    }
 }
 
 fn bench(headless: &'static Headless) {

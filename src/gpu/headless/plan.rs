@@ -68,7 +68,7 @@ pub struct PictureRequest<'a> {
     /// Host memory in bytes that the caller needs for each pixel in addition to the image itself, for example to encode
     /// it.
     pub host_bytes_per_pixel: u64,
-    /// True if no other picture of the scene is wanted, so that nothing is kept for others.
+    /// True if no other picture of the scene is wanted, or one more, so that nothing is kept for others.
     pub is_only: bool,
 }
 
@@ -174,7 +174,7 @@ impl RenderPlan {
     #[must_use]
     pub fn reason(&self) -> &str {
         match self.accel.choice {
-            AccelChoice::Auto if self.by_tiles => "a single picture by one ray for each pixel",
+            AccelChoice::Auto if self.by_tiles => "no other picture, and one ray for each pixel",
             AccelChoice::Tiles if self.by_tiles => "asked for",
             _ => &self.accel.reason,
         }
