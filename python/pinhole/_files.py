@@ -74,16 +74,9 @@ class Trajectory(Sequence[Spheres]):
         """
         camera = settings.pop("camera", None) or self.camera
         keys = FrameKeys()
-        boxes = []
         for frame in self:
             keys.add(frame._data)
-            if (bounds := frame.bounds) is not None:
-                boxes.append(bounds)
-        corners = None
-        if boxes:
-            low, high = zip(*boxes)
-            corners = ([min(x) for x in zip(*low)], [max(x) for x in zip(*high)])
-        placed = self[0]._placed({**settings, "camera": camera}, corners)
+        placed = self[0]._placed({**settings, "camera": camera}, frames=keys)
         frames = (self._read(frame, keys) for frame in self._frames)
         movie(path, (frame.render(camera=placed, **settings) for frame in frames), fps=fps)
 

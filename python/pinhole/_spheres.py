@@ -21,6 +21,7 @@ from ._orbit import rotation
 from ._pinhole import SphereData
 
 if TYPE_CHECKING:
+    from ._pinhole import FrameKeys
     from ._view import View
 
 Array = npt.NDArray[Any]
@@ -302,17 +303,23 @@ class Spheres:
         return Certificate(self._data.verify(text))
 
     def _placed(
-        self, settings: Mapping[str, Any], corners: tuple[list[float], list[float]] | None = None
+        self, settings: Mapping[str, Any], *, frames: FrameKeys | None = None, axis: Array | None = None
     ) -> dict[str, Any]:
-        """Returns the table of a camera with its position. It frames a box, or by default these spheres."""
+        """Returns the table of a camera with its position. It frames several frames, the body that these spheres sweep
+        as they turn about an axis, or by default these spheres.
+        """
         settings = {key: of for key, of in settings.items() if key not in ("backend", "layers", "progress")}
-        placed: dict[str, dict[str, Any]] = json.loads(self._data.placed(self._text(settings), corners))
+        text = self._text(settings)
+        around = None if axis is None else axis.tolist()
+        found = self._data.placed(text, around) if frames is None else frames.placed(text)
+        placed: dict[str, dict[str, Any]] = json.loads(found)
         return {kind: {key: of for key, of in keys.items() if of is not None} for kind, keys in placed.items()}
 
     def turntable(
         self, path: str | os.PathLike[str], *, frames: int = 120, fps: float = 25.0, **settings: Any
     ) -> None:
-        """Renders a movie in which the camera goes once around the spheres, about the direction that is up.
+        """Renders a movie in which the camera goes once around the spheres, about the direction that is up,
+        at a distance from which they fit into every picture.
 
         ``path`` is as for ``pinhole.movie``; further arguments are those of ``render``.
         """
@@ -322,8 +329,10 @@ class Spheres:
         camera = as_camera(self.camera if camera is None else camera)
         if not isinstance(camera, Camera) or camera.kind != "pinhole":
             raise InputError("a turntable needs a pinhole camera, such as Camera.frame(view, zoom=...)")
-        (kind, placed), = self._placed({**settings, "camera": camera}).items()
-        eye, up = np.array(placed["eye"]), np.array(camera.up or self._data.view_axes("x", 0.0, None)[1])
+        up = np.array(camera.up or self._data.view_axes("x", 0.0, None)[1], float)
+        up = up / np.linalg.norm(up)
+        (kind, placed), = self._placed({**settings, "camera": camera}, axis=up).items()
+        eye = np.array(placed["eye"])
         bounds = self.bounds
         middle = np.zeros(3) if bounds is None else (bounds[0] + bounds[1]) / 2
         look = np.array(placed["look_at"]) - eye if "look_at" in placed else np.array(placed["direction"])

@@ -6,12 +6,13 @@ use std::sync::{Mutex, PoisonError};
 use pyo3::prelude::*;
 
 use crate::fault::{Fault, Outcome};
-use crate::look::SceneText;
+use crate::look::{self, SceneText};
 use crate::scene::DataExtras;
 use crate::spheres::SphereData;
 use crate::worker;
 use pinhole_data::load::{self, Dataset, Format, LoadError, Options, Trajectory};
 use pinhole_figure::color_by::JoinedKeys;
+use pinhole_figure::framing::Union;
 
 /// A file of spheres, perhaps with several frames, which are read one at a time.
 #[pyclass(frozen, module = "pinhole._pinhole")]
@@ -111,11 +112,11 @@ fn format_of(path: &str, name: Option<&str>) -> Outcome<&'static Format> {
     }
 }
 
-/// The meaning of colours in several frames together.
+/// What several frames have in common: the meaning of their colours, and the spheres that a camera frames.
 #[pyclass(frozen, module = "pinhole._pinhole")]
 #[derive(Default)]
 pub(crate) struct FrameKeys {
-    keys: Mutex<JoinedKeys>,
+    joined: Mutex<(JoinedKeys, Union)>,
 }
 
 #[pymethods]
@@ -125,16 +126,25 @@ impl FrameKeys {
         Self::default()
     }
 
-    /// Adds the meaning of colours in a frame, if a column gives them.
+    /// Adds a frame.
     fn add(&self, frame: &SphereData) {
+        let mut joined = self.joined.lock().unwrap_or_else(PoisonError::into_inner);
+        joined.1.add(&frame.scene());
         if let Some(key) = &frame.key {
-            self.keys.lock().unwrap_or_else(PoisonError::into_inner).add(key);
+            joined.0.add(key);
         }
+    }
+
+    /// The camera of a text with its position, as JSON, which frames the spheres of all frames.
+    fn placed(&self, text: SceneText) -> PyResult<String> {
+        let union = self.joined.lock().unwrap_or_else(PoisonError::into_inner).1.clone();
+        let framed = union.scene().map_err(|error| Fault::Input(error.to_string()))?;
+        Ok(look::placed(&text, &framed)?)
     }
 }
 
 impl FrameKeys {
     pub(crate) fn joined(&self) -> JoinedKeys {
-        self.keys.lock().unwrap_or_else(PoisonError::into_inner).clone()
+        self.joined.lock().unwrap_or_else(PoisonError::into_inner).0.clone()
     }
 }

@@ -7,7 +7,6 @@ use pyo3::prelude::*;
 
 use crate::fault::{Fault, Outcome};
 use pinhole::camera::{Camera, CameraError};
-use pinhole::geometry::bounds::Bounds;
 use pinhole::light::environment::Environment;
 use pinhole::{Encoding, Film, LayerSet, RenderSettings, Scene, View};
 use pinhole_data::load::open_regular;
@@ -129,12 +128,9 @@ fn environment_of(path: &str) -> Outcome<Environment> {
 }
 
 /// The camera of a text with its position, as JSON. It frames the box between two corners, or else the scene.
-pub(crate) fn placed(text: &SceneText, scene: &Scene, corners: Option<([f64; 3], [f64; 3])>) -> Outcome<String> {
+pub(crate) fn placed(text: &SceneText, framed: &Scene) -> Outcome<String> {
     let file = text.parse()?;
-    let boxed =
-        corners.map(|(low, high)| Bounds::of_sphere(low.into(), 0.0).union(Bounds::of_sphere(high.into(), 0.0)));
-    let subject = boxed.map_or_else(|| scene.subject(), Into::into);
-    let placed = file.camera_parameters().placed(file.film.aspect(), &subject);
+    let placed = file.camera_parameters().placed(file.film.aspect(), &framed.subject());
     let placed = placed.map_err(|error| text.fault(&file.at_camera(&error)))?;
     serde_json::to_string(&placed).map_err(|error| Fault::Internal(error.to_string()))
 }

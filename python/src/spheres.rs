@@ -22,6 +22,7 @@ use pinhole::scene::{Centers as NewCenters, NewColors, SceneUpdate};
 use pinhole::{LayerSet, Scene};
 use pinhole_data::load::{Column, ColumnValues, Dataset, Labels};
 use pinhole_figure::color_by::ColorKey;
+use pinhole_figure::framing::swept;
 use pinhole_figure::scene_file::DataScene;
 
 /// Spheres: arrays or a file, and the settings that concern data.
@@ -228,9 +229,13 @@ impl SphereData {
         Ok((direction.to_array(), up.to_array()))
     }
 
-    /// The camera of a text with its position, as JSON. It frames the box between two corners, or else the spheres.
-    fn placed(&self, text: SceneText, corners: Option<([f64; 3], [f64; 3])>) -> PyResult<String> {
-        Ok(look::placed(&text, &self.scene(), corners)?)
+    /// The camera of a text with its position, as JSON. It frames the spheres, or the body that they sweep as they turn
+    /// about an axis.
+    fn placed(&self, text: SceneText, axis: Option<[f64; 3]>) -> PyResult<String> {
+        let scene = self.scene();
+        let framed = axis.map(|axis| swept(&scene, axis.into(), scene.bounds_to_frame().center()));
+        let framed = framed.transpose().map_err(|error| Fault::Input(error.to_string()))?;
+        Ok(look::placed(&text, framed.as_ref().unwrap_or(&scene))?)
     }
 
     /// Renders the view by one ray for each pixel on the device, and decides whether the picture is legal.

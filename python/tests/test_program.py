@@ -61,3 +61,22 @@ def test_one_ray_for_each_pixel_and_layers(program, tmp_path):
     assert picture._repr_png_() == wanted
     picture.save(tmp_path / "own.npy", layer="depth")
     assert (tmp_path / "own.npy").read_bytes() == (tmp_path / "d.npy").read_bytes()
+
+
+@pytest.mark.filterwarnings("ignore::pinhole.Note")
+def test_movies_and_turntables(program, tmp_path):
+    rod = np.stack([np.linspace(0, 9, 40), np.zeros(40), np.sin(np.arange(40.0))], axis=1).astype("f4")
+    np.save(tmp_path / "rod.npy", rod)
+    frames = ["40\nframe\n" + "".join(f"C {x * part} {y} {z}\n" for x, y, z in rod) for part in (0.3, 1.0, 0.6)]
+    (tmp_path / "t.xyz").write_text("".join(frames))
+    for style in ("fast", "default"):
+        flags = ["--size", "96x72", "--style", style, "--backend", "cpu"]
+        settings = {"size": (96, 72), "style": style, "backend": "cpu"}
+        program("t.xyz", *flags, "--frames", ":", output=f"{style}-p%d.png")
+        ph.read(tmp_path / "t.xyz").movie(tmp_path / f"{style}-m%d.png", **settings)
+        program("rod.npy", *flags, "--radius", "0.3", "--turntable", "3", output=f"{style}-q%d.png")
+        ph.Spheres(rod, 0.3).turntable(tmp_path / f"{style}-t%d.png", frames=3, **settings)
+        for one, other in ("pm", "qt"):
+            for number in range(3):
+                wanted, made = (tmp_path / f"{style}-{kind}{number}.png" for kind in (one, other))
+                assert made.read_bytes() == wanted.read_bytes(), made.name

@@ -19,7 +19,6 @@ mod numbers;
 mod run;
 mod series;
 mod target;
-mod union;
 
 pub(super) fn is_movie(path: &Path) -> bool {
     target::movie_of(path).is_some()

@@ -7,7 +7,6 @@ use std::sync::Arc;
 use anyhow::{Context, Result};
 
 use crate::flags::camera::{CameraTable, list};
-use crate::frames::union::around;
 use crate::input::{FramedScene, Look, Source, read};
 use crate::terminal::failure::Failure;
 use pinhole::camera::{CameraMotion, CameraOnPath, CameraParameters, CameraPath, PathClock, PlaceOnPath};
@@ -15,6 +14,7 @@ use pinhole::glam::{DQuat, DVec3};
 use pinhole::light::environment::Environment;
 use pinhole::scene::Scene;
 use pinhole_figure::color_by::ColorKey;
+use pinhole_figure::framing::around;
 use pinhole_figure::scene_file::{SceneFile, parse_camera_path};
 
 /// The most pictures of one scene along a path.

@@ -5,7 +5,6 @@ use std::collections::HashSet;
 use crate::frames::args::FrameRange;
 use crate::frames::moving::{PathRequest, in_frame};
 use crate::frames::target::Target;
-use crate::frames::union::{Union, scene_of};
 use crate::frames::{Pictures, SeriesRequest};
 use crate::input::contents::Contents;
 use crate::input::{FoundFrames, Source};
@@ -13,6 +12,7 @@ use crate::terminal::failure::Failure;
 use crate::terminal::progress::{self, tell};
 use pinhole::scene::{Scene, SceneError};
 use pinhole_figure::color_by::{ColorBy, JoinedKeys};
+use pinhole_figure::framing::{Union, scene_of};
 
 #[derive(Default)]
 pub(crate) struct Numbers {

@@ -4,7 +4,7 @@ use std::cell::RefCell;
 use std::panic::resume_unwind;
 use std::sync::mpsc::{SyncSender, sync_channel};
 use std::thread;
-use std::time::{Duration, Instant};
+use std::time::Instant;
 
 use crate::flags::render::RenderArgs;
 use crate::frames::args::numbered;
@@ -42,7 +42,6 @@ pub(crate) struct Writing {
     pub(crate) layers: LayerSet,
     /// Width and height of a picture.
     size: [u32; 2],
-    quiet: bool,
 }
 
 /// Facts that may be known before the pictures are prepared.
@@ -108,7 +107,7 @@ pub(crate) fn ready(
     let all = numbers.all.clone();
     let (source, notes) = (job.source, notes.into_inner());
     let series = Series { source, input, camera, numbers, left, notes };
-    let writing = Writing { encoding, outputs, layers, size, quiet };
+    let writing = Writing { encoding, outputs, layers, size };
     Ok(Some(Ready { series, opened, stop_rule: job.stop_rule, writing, overview, all }))
 }
 
@@ -193,7 +192,7 @@ impl Writing {
             count,
             size: self.size,
         };
-        let mut status = Status::new(count, self.quiet);
+        let mut status = Status::new(count);
         let made = thread::scope(|scope| {
             let (sender, receiver) = sync_channel(1);
             let writing = scope.spawn({
@@ -221,30 +220,20 @@ impl Writing {
     }
 }
 
-/// Time between two lines of progress without a terminal.
-const PAUSE: Duration = Duration::from_secs(20);
-
 pub(crate) struct Status {
     total: usize,
     done: usize,
     started: Instant,
-    said: Instant,
-    quiet: bool,
 }
 
 impl Status {
-    pub(crate) fn new(total: usize, quiet: bool) -> Self {
-        let now = Instant::now();
-        Self { total, done: 0, started: now, said: now, quiet }
+    pub(crate) fn new(total: usize) -> Self {
+        Self { total, done: 0, started: Instant::now() }
     }
 
     /// Shows that work on the next frame has begun.
-    pub(crate) fn show(&mut self) {
-        let text = self.text();
-        if !progress::frames(text.clone()) && !self.quiet && self.said.elapsed() >= PAUSE {
-            self.said = Instant::now();
-            tell(text);
-        }
+    pub(crate) fn show(&self) {
+        progress::frames(self.text());
     }
 
     fn text(&self) -> String {

@@ -6,13 +6,13 @@ use std::thread;
 
 use anyhow::Context;
 
-use super::union::{Union, swept};
 use crate::frames::moving::{Axis, Course, MovingCamera, PathRequest, Stage, up_of};
 use crate::frames::numbers::{Notes, Numbers, Overview, frame};
 use crate::input::contents::Contents;
 use crate::input::{FramedScene, Input, Look, Source};
 use crate::terminal::failure::Failure;
 use pinhole::glam::DVec3;
+use pinhole_figure::framing::{Union, swept};
 
 struct Change {
     contents: Option<Box<Contents>>,

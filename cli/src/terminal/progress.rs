@@ -14,21 +14,19 @@ use pinhole::internals::text::whole_line;
 /// Shows a stage whose length is not known.
 pub(crate) fn stage(text: impl Into<Cow<'static, str>>) {
     let mut line = line();
-    if line.is_seen() && !line.is_held {
+    if line.is_seen() && line.frames.is_none() {
         let bar = line.show(ProgressBar::new_spinner(), "{spinner} {wide_msg}", None);
         bar.set_message(whole_line(&text.into()));
         bar.enable_steady_tick(Duration::from_millis(100));
     }
 }
 
-/// Shows the progress of many pictures, which replaces that of single pictures from now on. Returns whether it is
-/// shown, which needs a terminal.
-pub(crate) fn frames(text: String) -> bool {
+/// Shows the progress of many pictures, which replaces that of single pictures from now on.
+pub(crate) fn frames(text: String) {
     let mut line = line();
-    let is_seen = line.is_seen();
-    if is_seen {
-        if !line.is_held {
-            line.is_held = true;
+    let is_first = line.frames.replace(text.clone()).is_none();
+    if line.is_seen() {
+        if is_first {
             let bar = line.show(ProgressBar::new_spinner(), "{spinner} {msg}", None);
             bar.enable_steady_tick(Duration::from_millis(100));
         }
@@ -36,7 +34,6 @@ pub(crate) fn frames(text: String) -> bool {
             bar.set_message(text);
         }
     }
-    is_seen
 }
 
 /// Whether progress is shown, which needs a terminal.
@@ -60,13 +57,16 @@ pub(crate) fn rendering(part: f64, message: String) {
 
 fn show_part(part: f64, template: &str, message: Option<String>) {
     let mut line = line();
-    if line.is_closed || line.is_held {
+    if line.is_closed || (line.is_seen() && line.frames.is_some()) {
         return;
     }
     if !line.is_seen() {
         let now = Instant::now();
+        let frames = line.frames.clone();
         let plain = line.plain.get_or_insert_with(|| Plain::new(now));
         let due = plain.line(now, part, message.as_deref());
+        let of_frame = |frames| format!("{frames}; {:.0}% of this frame", 100.0 * part);
+        let due = due.map(|due| frames.map_or(due, of_frame));
         // `tell` needs the lock.
         drop(line);
         due.iter().for_each(tell);
@@ -97,7 +97,7 @@ pub(crate) fn close() {
     line().is_closed = true;
 }
 
-static LINE: Mutex<Line> = Mutex::new(Line { bar: None, total: None, is_held: false, is_closed: false, plain: None });
+static LINE: Mutex<Line> = Mutex::new(Line { bar: None, total: None, frames: None, is_closed: false, plain: None });
 
 /// The time between two lines if standard error is not a terminal.
 const PLAIN: Duration = Duration::from_secs(10);
@@ -107,8 +107,8 @@ pub(crate) struct Line {
     pub(crate) bar: Option<ProgressBar>,
     /// Number of steps of a bar; `None` for a stage whose length is not known.
     pub(crate) total: Option<u64>,
-    /// Whether the line shows the progress of all frames instead of one picture.
-    pub(crate) is_held: bool,
+    /// The progress of all frames, which is shown instead of that of one picture.
+    pub(crate) frames: Option<String>,
     pub(crate) is_closed: bool,
     /// The state of the lines without a terminal, since the first part of a picture.
     pub(crate) plain: Option<Plain>,

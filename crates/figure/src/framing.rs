@@ -1,11 +1,11 @@
-//! The spheres of several scenes together, for one camera and one look.
+//! Scenes that stand for what a camera should frame in several pictures: all frames of a trajectory, or a scene that turns.
 
 use std::f64::consts::{PI, TAU};
 
 use pinhole::LinearRgb;
 use pinhole::glam::{DQuat, DVec3};
+use pinhole::internals::parallel;
 use pinhole::scene::{Scene, SceneError};
-use rayon::prelude::*;
 
 /// The most spheres that are kept. If there are more, only spheres that extend farthest in some direction stay, and a
 /// few others for the mean radius.
@@ -18,16 +18,17 @@ const DIRECTIONS: usize = 256;
 /// The most spheres that are kept for the mean radius.
 const SAMPLE: usize = 1 << 14;
 
-/// The spheres of several scenes, each x, y, z, radius.
-#[derive(Debug, Default)]
-pub(super) struct Union {
+/// The spheres of several scenes together, each x, y, z, radius.
+#[derive(Clone, Debug, Default)]
+pub struct Union {
     spheres: Vec<[f64; 4]>,
     /// Spheres that were added to those of the data.
     added: Vec<[f64; 4]>,
 }
 
 impl Union {
-    pub(super) fn add(&mut self, scene: &Scene) {
+    /// Adds the spheres of a scene.
+    pub fn add(&mut self, scene: &Scene) {
         let origin = scene.origin();
         let (of_data, added) = scene.spheres().split_at(scene.len() - scene.added());
         for (all, new) in [(&mut self.spheres, of_data), (&mut self.added, added)] {
@@ -41,21 +42,28 @@ impl Union {
     }
 
     /// Returns the kept spheres, and the number of those, at the end, that were added to the data.
-    pub(super) fn into_spheres(mut self) -> (Vec<[f64; 4]>, usize) {
+    #[must_use]
+    pub fn into_spheres(mut self) -> (Vec<[f64; 4]>, usize) {
         let added = self.added.len();
         self.spheres.append(&mut self.added);
         (self.spheres, added)
     }
 
     /// Makes a scene of the kept spheres.
-    pub(super) fn scene(self) -> Result<Scene, SceneError> {
+    ///
+    /// # Errors
+    /// Returns an error if there are too many spheres for a scene, or they are too far apart.
+    pub fn scene(self) -> Result<Scene, SceneError> {
         let (spheres, added) = self.into_spheres();
         scene_of(&spheres, added)
     }
 }
 
 /// Makes a scene of spheres, the last `added` of which were added to the data.
-pub(super) fn scene_of(spheres: &[[f64; 4]], added: usize) -> Result<Scene, SceneError> {
+///
+/// # Errors
+/// Returns an error if a scene cannot have these spheres.
+pub fn scene_of(spheres: &[[f64; 4]], added: usize) -> Result<Scene, SceneError> {
     Ok(Scene::from_f64(spheres, LinearRgb::WHITE)?.with_added(added))
 }
 
@@ -67,8 +75,8 @@ fn reduce(spheres: &mut Vec<[f64; 4]>) {
         let reach = |&[x, y, z, radius]: &[f64; 4]| direction.dot(DVec3::new(x, y, z)) + radius;
         all.iter().max_by(|a, b| reach(a).total_cmp(&reach(b))).copied()
     };
-    let kept: Vec<_> = (0..DIRECTIONS).into_par_iter().filter_map(farthest).collect();
-    *spheres = kept.into_iter().chain(sample(all)).collect();
+    let kept = parallel::map(DIRECTIONS, farthest);
+    *spheres = kept.into_iter().flatten().chain(sample(all)).collect();
 }
 
 /// A sample of the spheres, at equal steps.
@@ -83,7 +91,10 @@ fn in_world(origin: DVec3, sphere: &[f32; 4]) -> [f64; 4] {
 }
 
 /// The body that a scene sweeps as it turns about an axis through a point, as a scene of spheres on its surface.
-pub(super) fn swept(scene: &Scene, axis: DVec3, center: DVec3) -> Result<Scene, SceneError> {
+///
+/// # Errors
+/// Returns an error if the body is too large for a scene.
+pub fn swept(scene: &Scene, axis: DVec3, center: DVec3) -> Result<Scene, SceneError> {
     /// Number of directions in a half plane beside the axis.
     const PROFILE: usize = 64;
     /// Number of steps of a full turn.
@@ -99,7 +110,7 @@ pub(super) fn swept(scene: &Scene, axis: DVec3, center: DVec3) -> Result<Scene, 
         };
         spheres.iter().max_by(|a, b| reach(a).total_cmp(&reach(b))).copied()
     };
-    let profile: Vec<_> = (0..PROFILE).into_par_iter().filter_map(farthest).collect();
+    let profile: Vec<_> = parallel::map(PROFILE, farthest).into_iter().flatten().collect();
     let on_surface = (0..STEPS).flat_map(|step| {
         let turn = DQuat::from_axis_angle(axis, TAU * step as f64 / STEPS as f64);
         profile.iter().map(move |&[x, y, z, radius]| {
@@ -120,7 +131,10 @@ fn body(of_data: &[[f64; 4]], on_surface: impl Iterator<Item = [f64; 4]>) -> Res
 }
 
 /// The ball around a scene, as a scene: spheres on the ball's surface, and some of the scene's own for the mean radius.
-pub(super) fn around(scene: &Scene) -> Result<Scene, SceneError> {
+///
+/// # Errors
+/// Returns an error if the ball is too large for a scene.
+pub fn around(scene: &Scene) -> Result<Scene, SceneError> {
     let center = scene.bounds_to_frame().center();
     let spheres: Vec<[f64; 4]> = scene.spheres().iter().map(|sphere| in_world(scene.origin(), sphere)).collect();
     let reach = |&[x, y, z, radius]: &[f64; 4]| DVec3::new(x, y, z).distance(center) + radius;
