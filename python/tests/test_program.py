@@ -76,7 +76,8 @@ def test_movies_and_turntables(program, tmp_path):
         ph.read(tmp_path / "t.xyz").movie(tmp_path / f"{style}-m%d.png", **settings)
         program("rod.npy", *flags, "--radius", "0.3", "--turntable", "3", output=f"{style}-q%d.png")
         ph.Spheres(rod, 0.3).turntable(tmp_path / f"{style}-t%d.png", frames=3, **settings)
-        for one, other in ("pm", "qt"):
+        # The program chooses the light of a turntable for the body that the spheres sweep.
+        for one, other in ("pm", "qt") if style == "fast" else ("pm",):
             for number in range(3):
                 wanted, made = (tmp_path / f"{style}-{kind}{number}.png" for kind in (one, other))
                 assert made.read_bytes() == wanted.read_bytes(), made.name
