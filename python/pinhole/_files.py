@@ -11,7 +11,7 @@ from ._camera import Camera
 from ._errors import InputError
 from ._image import Image
 from ._movie import movie
-from ._pinhole import FileData, FrameKeys
+from ._pinhole import FileData, JoinedFrames
 from ._spheres import Spheres, warn
 
 
@@ -49,7 +49,7 @@ class Trajectory(Sequence[Spheres]):
             raise IndexError(f"there is no frame {index}; there are {len(self)}") from None
         return self._read(frame, None)
 
-    def _read(self, frame: int, keys: FrameKeys | None) -> Spheres:
+    def _read(self, frame: int, keys: JoinedFrames | None) -> Spheres:
         data = self._file.frame(frame, _settings.data_text(self._settings), keys)
         if keys is None:
             warn(data.notes)
@@ -73,7 +73,7 @@ class Trajectory(Sequence[Spheres]):
         All frames are read twice, because the positions and values of all spheres must be known before.
         """
         camera = settings.pop("camera", None) or self.camera
-        keys = FrameKeys()
+        keys = JoinedFrames()
         for frame in self:
             keys.add(frame._data)
         placed = self[0]._placed({**settings, "camera": camera}, frames=keys)

@@ -21,7 +21,7 @@ from ._orbit import rotation
 from ._pinhole import SphereData
 
 if TYPE_CHECKING:
-    from ._pinhole import FrameKeys
+    from ._pinhole import JoinedFrames
     from ._view import View
 
 Array = npt.NDArray[Any]
@@ -303,7 +303,7 @@ class Spheres:
         return Certificate(self._data.verify(text))
 
     def _placed(
-        self, settings: Mapping[str, Any], *, frames: FrameKeys | None = None, axis: Array | None = None
+        self, settings: Mapping[str, Any], *, frames: JoinedFrames | None = None, axis: Array | None = None
     ) -> dict[str, Any]:
         """Returns the table of a camera with its position. It frames several frames, the body that these spheres sweep
         as they turn about an axis, or by default these spheres.

@@ -65,9 +65,9 @@ impl FileData {
         py: Python<'_>,
         index: usize,
         text: SceneText,
-        keys: Option<&FrameKeys>,
+        keys: Option<&JoinedFrames>,
     ) -> PyResult<SphereData> {
-        let (this, keys) = (slf.unbind(), keys.map(FrameKeys::joined));
+        let (this, keys) = (slf.unbind(), keys.map(JoinedFrames::joined));
         Ok(worker::run(py, None, move |_| {
             let this = this.get();
             let mut loaded = this.read(index)?;
@@ -112,15 +112,15 @@ fn format_of(path: &str, name: Option<&str>) -> Outcome<&'static Format> {
     }
 }
 
-/// What several frames have in common: the meaning of their colours, and the spheres that a camera frames.
+/// Several frames together: the meaning of their colours, and the spheres that a camera frames.
 #[pyclass(frozen, module = "pinhole._pinhole")]
 #[derive(Default)]
-pub(crate) struct FrameKeys {
+pub(crate) struct JoinedFrames {
     joined: Mutex<(JoinedKeys, Union)>,
 }
 
 #[pymethods]
-impl FrameKeys {
+impl JoinedFrames {
     #[new]
     fn new() -> Self {
         Self::default()
@@ -143,7 +143,7 @@ impl FrameKeys {
     }
 }
 
-impl FrameKeys {
+impl JoinedFrames {
     pub(crate) fn joined(&self) -> JoinedKeys {
         self.joined.lock().unwrap_or_else(PoisonError::into_inner).0.clone()
     }

@@ -57,7 +57,7 @@ fn _pinhole(module: &Bound<'_, PyModule>) -> PyResult<()> {
     module.add_class::<certificate::CertificateData>()?;
     module.add_class::<files::FileData>()?;
     module.add_class::<image::Picture>()?;
-    module.add_class::<files::FrameKeys>()?;
+    module.add_class::<files::JoinedFrames>()?;
     module.add_class::<spheres::SphereData>()?;
     module.add_function(wrap_pyfunction!(device::adapters, module)?)?;
     module.add_function(wrap_pyfunction!(device::use_adapter, module)?)?;

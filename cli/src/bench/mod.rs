@@ -229,15 +229,14 @@ fn measure_tiles(
     let times = repeat(name, reps, || {
         let [lists, copies, (trace, submissions)] =
             profile::spent([&["divide", "build"], &["upload"], &["trace"]], picture)?;
-        builds.push(lists.0);
-        uploads.push(copies.0);
+        builds.push(Some(lists.0));
+        uploads.push(Some(copies.0));
         let mut time = TraceTime::default();
         (time.wall, time.submissions) = (trace, submissions as u32);
         Ok(time)
     })?;
-    let [build, upload] = [builds, uploads].map(|mut times| {
-        times.sort_unstable();
-        times.get(times.len() / 2).copied().unwrap_or_default()
+    let [build, upload] = [builds, uploads].map(|times| {
+        Spread::of(times.into_iter()).map_or(Duration::ZERO, |spread| Duration::from_secs_f64(spread.median_seconds))
     });
     let scene_bytes = plan.scene_buffers.iter().map(|buffer| buffer.bytes).sum();
     Ok(Measured { structure: plan.structure(), build: planning + build, upload, first_render, times, scene_bytes })

@@ -254,23 +254,22 @@ fn on_gpu(headless: &Headless, shot: &Shot<'_>, choice: AccelChoice) -> Result<V
     let rendered = with_structures(headless, choice, plan, |plan| {
         let mut too_short = None;
         let (done, is_stopped) = interrupt::keeping(|| {
-            if plan.by_tiles || (!is_lit && views.len() == 1) {
-                let pictures = views.iter().map(|view| {
-                    let watching = Watching::new(stop_rule, views.len(), pixels, false);
-                    let name = plan.structure().name();
-                    let upload_watch = &mut |progress: &_| watch_upload(name, progress);
-                    let watch = &mut |progress: &_| watching.decide(progress);
-                    let request = PictureRequest::new(scene, view, settings, layers);
-                    Ok((headless.render_planned(&request, plan, upload_watch, watch).wait()?, watching))
-                });
-                return pictures.collect::<Result<Vec<_>, GpuError>>();
+            let keeps_nothing = plan.by_tiles || (!is_lit && views.len() == 1);
+            let kept = if keeps_nothing { None } else { Some(upload(headless, scene, plan)?) };
+            if kept.is_some() {
+                progress::stage("preparing");
             }
-            let buffers = upload(headless, scene, plan)?;
-            progress::stage("preparing");
             let pictures = views.iter().map(|view| {
                 let watching = Watching::new(stop_rule, views.len(), pixels, is_lit);
                 let watch = &mut |progress: &_| watching.decide(progress);
-                let picture = headless.render_uploaded(&buffers, view, settings, layers, watch).wait();
+                let picture = match &kept {
+                    Some(buffers) => headless.render_uploaded(buffers, view, settings, layers, watch).wait(),
+                    None => {
+                        let upload_watch = &mut |progress: &_| watch_upload(plan.structure().name(), progress);
+                        let request = PictureRequest::new(scene, view, settings, layers);
+                        headless.render_planned(&request, plan, upload_watch, watch).wait()
+                    }
+                };
                 too_short = watching.too_short();
                 Ok((picture?, watching))
             });

@@ -57,7 +57,7 @@ impl<'a> FileRows<'a> {
             Numbers::F32 => SphereArray::F32(self.spheres(f32::from_le_bytes, 0.0)?),
             Numbers::F64 => SphereArray::F64(self.spheres(f64::from_le_bytes, 0.0)?),
         };
-        Table::default().dress(spheres, self.rows.have_radii, self.options)
+        Table::default().dress(spheres, self.rows.columns == 4, self.options)
     }
 
     fn spheres<T: Copy + Send + Sync, const WIDTH: usize>(
@@ -65,10 +65,9 @@ impl<'a> FileRows<'a> {
         decode: impl Fn([u8; WIDTH]) -> T + Sync,
         zero: T,
     ) -> Result<Vec<[T; 4]>, LoadError> {
-        let Rows { first, count, have_radii, .. } = self.rows;
+        let Rows { first, count, columns, .. } = self.rows;
         let memory = |_| LoadError::new(format!("there is not enough memory for {count} spheres"));
         let mut spheres = parallel::try_map(count, |_| [zero; 4]).map_err(memory)?;
-        let columns = if have_radii { 4 } else { 3 };
         let pieces = spheres.chunks_mut(PIECE).enumerate().collect();
         let read = parallel::map_parts(pieces, |(piece, spheres): (usize, &mut [[T; 4]])| -> io::Result<()> {
             let mut bytes = vec![0; spheres.len() * columns * WIDTH];

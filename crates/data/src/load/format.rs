@@ -107,21 +107,21 @@ pub(super) enum Numbers {
     F64,
 }
 
-/// The place of an array of little-endian numbers in a file, row by row: x, y, z, and perhaps the radius of each sphere.
+/// The place of an array of little-endian numbers in a file, row by row.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) struct Rows {
     /// Byte of the first row.
     pub(super) first: u64,
     pub(super) count: usize,
-    pub(super) have_radii: bool,
+    /// 3 for x, y, z, or 4 for x, y, z, radius.
+    pub(super) columns: usize,
     pub(super) numbers: Numbers,
 }
 
 impl Rows {
     /// Number of bytes of the rows in the file; `None` if there are more than any file has.
     pub(super) fn bytes(&self) -> Option<u64> {
-        let width = [3, 4][usize::from(self.have_radii)] * self.numbers.width();
-        (self.count as u64).checked_mul(width)
+        (self.count as u64).checked_mul(self.columns as u64 * self.numbers.width())
     }
 }
 

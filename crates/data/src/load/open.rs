@@ -26,9 +26,9 @@ pub fn open(path: impl AsRef<Path>, options: &Options) -> Result<Dataset, LoadEr
         return frames.into_frame(options.frame.unwrap_or_default());
     }
     if let Source::Plain(reader) = &source
-        && let Some(rows) = FileRows::find(format, reader.get_ref(), options)?
+        && let Some(rows) = FileRows::find(format, reader.get_ref(), options).map_err(|error| error.in_file(path))?
     {
-        return rows.read();
+        return rows.read().map_err(|error| error.in_file(path));
     }
     let mut bytes = Vec::new();
     source.read_to_end(&mut bytes).map_err(failed)?;

@@ -32,7 +32,7 @@ pub fn read_spheres(bytes: &[u8]) -> Result<SphereArray, LoadError> {
 /// The rows of a file of `size` bytes, if they are whole.
 pub(super) fn rows_of(size: u64) -> Option<Rows> {
     let count = usize::try_from(size / SPHERE_BYTES as u64).ok()?;
-    let rows = Rows { first: 0, count, have_radii: true, numbers: Numbers::F32 };
+    let rows = Rows { first: 0, count, columns: 4, numbers: Numbers::F32 };
     (rows.bytes() == Some(size)).then_some(rows)
 }
 

@@ -72,11 +72,11 @@ pub(super) fn rows_of(head: &[u8], size: u64, options: &Options) -> Option<Rows>
     let rows = Rows {
         first: (head.len() - rest.len()) as u64,
         count: usize::try_from(count).ok()?,
-        have_radii: columns == 4,
+        columns: columns as usize,
         numbers,
     };
     let is_whole = rows.bytes().and_then(|bytes| bytes.checked_add(rows.first)) == Some(size);
-    (is_whole && !(rows.have_radii && options.radius.is_some())).then_some(rows)
+    (is_whole && !(columns == 4 && options.radius.is_some())).then_some(rows)
 }
 
 /// An array whose data are as long as its header says.
