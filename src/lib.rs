@@ -151,6 +151,7 @@ pub mod range;
 mod recording;
 pub mod render;
 pub mod scene;
+mod smooth;
 mod text;
 pub mod verify;
 

@@ -9,7 +9,8 @@
 use crate::camera::View;
 use crate::image::{Image, LayerSet, NO_ID};
 use crate::parallel;
-use crate::render::{Decision, NearestPicture, Picture, RenderSettings, Watch};
+use crate::render::{Decision, NearestPicture, Picture, PrimarySettings, RenderSettings, Watch};
+use crate::smooth::{SmoothPicture, first_half};
 
 mod denoise;
 pub(crate) mod light;
@@ -73,7 +74,17 @@ pub fn render_watched<'a>(
             settings.check(search.scene())?;
             primary_watched(search, view, &primary, layers, watch)
         }
-        None => SampledPicture::new(search, view, settings)?.render(layers, watch),
+        None => {
+            settings.check(search.scene())?;
+            let scene = search.scene();
+            let frame = (scene.spheres(), scene.origin());
+            let Some(smooth) = SmoothPicture::new(frame, scene.checked_appearance(), view, settings) else {
+                return SampledPicture::new(search, view, settings)?.render(layers, watch);
+            };
+            let (of_ids, primary) = (smooth.view_of_ids(), PrimarySettings::default());
+            let ids = primary_watched(search, &of_ids, &primary, smooth.layers(layers), &mut first_half(watch))?;
+            smooth.draw(ids.image, layers, RenderError::Stopped, watch)
+        }
     }
 }
 

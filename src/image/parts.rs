@@ -67,6 +67,15 @@ impl Image {
         Ok(both)
     }
 
+    /// A rectangle of the picture, of `size` (width and height), whose first pixel is at `origin`.
+    pub(crate) fn cut(&self, origin: [u32; 2], [width, height]: [u32; 2]) -> Result<Self, ImageTooLarge> {
+        let mut part = Self::new(width, height, self.layers())?;
+        let [left, top] = origin.map(|start| start as usize);
+        let rows = (0..height as usize).map(|row| (row * width as usize, (top + row) * self.width as usize + left));
+        part.copy(self, &rows, width as usize);
+        Ok(part)
+    }
+
     /// Copies the pixels with these indices from a picture of the same size and layers.
     pub(crate) fn copy_pixels(&mut self, from: &Self, pixels: &[usize]) {
         self.copy(from, &pixels.iter().map(|at| (*at, *at)), 1);

@@ -194,12 +194,16 @@ pub struct Occlusion {
     pub radius: Option<f64>,
     /// The number of directions per sample of a pixel: 1 to 1024.
     pub samples: u32,
+    /// Whether nothing is random, so that there is no noise, where spheres are opaque and have no gloss, and there are no
+    /// ground, shadows, lens, lights with a width or denoising. Other pictures take random directions.
+    #[serde(rename = "smooth")]
+    pub is_smooth: bool,
 }
 
 impl Default for Occlusion {
-    /// Four directions, and occlusion at any distance.
+    /// Four random directions, and occlusion at any distance.
     fn default() -> Self {
-        Self { radius: None, samples: 4 }
+        Self { radius: None, samples: 4, is_smooth: false }
     }
 }
 

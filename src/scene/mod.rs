@@ -43,7 +43,8 @@ pub use update::{Centers, NewColors, SceneUpdate, UpdateError};
 #[derive(Clone, Debug)]
 pub struct Scene {
     origin: DVec3,
-    spheres: Vec<[f32; 4]>,
+    /// Shared with a device's copy, which draws smooth pictures from them.
+    spheres: Arc<Vec<[f32; 4]>>,
     /// Shared with users that need nothing else of the scene.
     appearance: Arc<SceneAppearance>,
     bounds: Option<Bounds>,
@@ -133,7 +134,7 @@ impl Scene {
     /// A scene from an origin, spheres, appearance and bounds that have been checked.
     fn in_frame(origin: DVec3, spheres: Vec<[f32; 4]>, appearance: Appearance, bounds: Option<Bounds>) -> Self {
         let appearance = Arc::new(SceneAppearance::new(appearance, spheres.len()));
-        Self { origin, spheres, appearance, bounds, added: 0, whole: None }
+        Self { origin, spheres: Arc::new(spheres), appearance, bounds, added: 0, whole: None }
     }
 
     /// The spheres, all with these surface properties.
@@ -205,6 +206,12 @@ impl Scene {
     /// The spheres in input order: centre (x, y, z) in the frame of the scene, and radius.
     #[must_use]
     pub fn spheres(&self) -> &[[f32; 4]] {
+        &self.spheres
+    }
+
+    /// The spheres, which stay the same if the scene is updated.
+    #[cfg(feature = "gpu")]
+    pub(crate) fn shared_spheres(&self) -> &Arc<Vec<[f32; 4]>> {
         &self.spheres
     }
 

@@ -15,6 +15,7 @@ use crate::camera::View;
 use crate::parallel::{map_parts, ranges};
 use crate::recording::pixel_at;
 use crate::render::RenderSettings;
+use crate::smooth::SmoothPicture;
 use crate::verify::lit::check::LitCheck;
 use crate::verify::lit::forward;
 use crate::verify::{Checker, Interval, Verdict};
@@ -205,7 +206,10 @@ impl Checker<'_> {
             Some(inputs) => {
                 let mut check = LitCheck::new(self, &inputs);
                 check.brightest = check.most_light_of_paths();
-                check.finished_light(indices)
+                let scene = self.scene;
+                let frame = (scene.spheres(), scene.origin());
+                let smooth = SmoothPicture::new(frame, scene.checked_appearance(), view, settings);
+                check.finished_light(indices, smooth.as_ref())
             }
             None => vec![None; indices.len()],
         }

@@ -26,6 +26,7 @@ mod sampling;
 mod scene;
 mod search;
 mod settings;
+mod smooth;
 mod soundness;
 mod structures;
 mod verify;

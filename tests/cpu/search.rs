@@ -68,7 +68,11 @@ fn random_pictures() {
 }
 
 fn studio(random: &mut Rng, size: f64) -> RenderSettings {
-    let occlusion = Occlusion { radius: random.bool().then(|| size * random.f64()), samples: random.u32(1..4) };
+    let occlusion = Occlusion {
+        radius: random.bool().then(|| size * random.f64()),
+        samples: random.u32(1..4),
+        ..Occlusion::default()
+    };
     let cue = DepthCue { near: size, far: 4.0 * size, color: color(random) };
     let studio = Studio {
         occlusion: random.bool().then_some(occlusion),
@@ -166,7 +170,7 @@ fn many_equal_spheres_hide_light_by_their_own_opacity() {
         let mut settings = RenderSettings {
             integrator: Integrator::Studio(Studio {
                 shadows: true,
-                occlusion: Some(Occlusion { radius: None, samples: 4 }),
+                occlusion: Some(Occlusion { radius: None, samples: 4, ..Occlusion::default() }),
                 ..Studio::default()
             }),
             lights: Light::key_and_fill().to_vec(),

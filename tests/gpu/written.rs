@@ -3,7 +3,7 @@
 use libtest_mimic::{Failed, Trial};
 use pinhole::gpu::{Headless, Wait};
 use pinhole::image::encoding::Bits;
-use pinhole::render::{Outline, RenderSettings};
+use pinhole::render::{Occlusion, Outline, RenderSettings, Sampling, Studio};
 use pinhole::verify::finished::{FinishedCertificate, FinishedRequest, LEAST_EXACT, PixelVerdict};
 use pinhole::verify::written::{Samples, WrittenCertificate, WrittenPicture};
 use pinhole::verify::{Checker, Interval, Outcome};
@@ -37,6 +37,9 @@ pub(crate) fn trials() -> Vec<Trial> {
     let mut trials = Vec::new();
     for (name, view) in scenes::all() {
         trials.push(Trial::test(format!("written::legal::{name}"), move || legal(&view)));
+    }
+    for (name, view) in share(scenes::all().into_iter()) {
+        trials.push(Trial::test(format!("written::smooth::{name}"), move || smooth(view)));
     }
     for (name, view) in share(lit_scenes::all()) {
         trials.push(Trial::test(format!("written::exact::{name}"), move || exact(headless()?, &view)));
@@ -168,6 +171,19 @@ pub(crate) fn none_violated(judged: &[FinishedCertificate]) -> Result<(), Failed
         None => Ok(()),
         Some(first) => Err(first.to_string().into()),
     }
+}
+
+/// Judges a picture in which nothing is random, of the spheres of a view.
+fn smooth(mut view: View) -> Result<(), Failed> {
+    let occlusion = Occlusion { is_smooth: true, ..Occlusion::default() };
+    let outline = Some(Outline { depth: 1e-3, ..Outline::default() });
+    let studio = Studio { shadows: false, occlusion: Some(occlusion), outline, ..Studio::default() };
+    let sampling = Sampling { samples: 8, ..Sampling::default() };
+    view.settings = RenderSettings { integrator: Integrator::Studio(studio), sampling, ..RenderSettings::studio() };
+    if !view.settings.is_smooth(&view.scene, view.camera.as_ref()) {
+        return Ok(());
+    }
+    none_violated(&finished(headless()?, &view, false)?)
 }
 
 /// Judges pictures of this device. Almost all pixels are exact.

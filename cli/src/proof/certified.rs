@@ -88,8 +88,9 @@ pub(crate) fn judge(
     progress::stage("checking");
     let checker = Checker::new(&scene).context("the checker cannot be prepared")?;
     let judged = judge_by(&checker, input, encoding, outputs, written, images.clone())?;
-    if let (Outcome::Undecided, false, [image]) =
-        (outcome(&judged), input.settings.integrator.is_primary(), &images[..])
+    // Where nothing is random, light follows from hits, and a device has none of its own.
+    let is_random = !input.settings.integrator.is_primary() && !input.settings.is_smooth(&scene, input.view().camera);
+    if let (Outcome::Undecided, true, [image]) = (outcome(&judged), is_random, &images[..])
         && let Some(image) = witness(&checker, input, image)?
     {
         return judge_by(&checker, input, encoding, outputs, written, vec![image]);

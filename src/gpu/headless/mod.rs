@@ -49,8 +49,9 @@ use crate::gpu::scene::scene_buffers::SceneBuffers;
 use crate::gpu::scene::structures::with_retries;
 use crate::gpu::self_test::{SelfTestExtent, SelfTestReport, SelfTestRun};
 use crate::image::{Image, LayerSet};
-use crate::render::RenderSettings;
+use crate::render::{PrimarySettings, RenderSettings};
 use crate::scene::Scene;
+use crate::smooth::first_half;
 
 /// A device for rendering without a display.
 #[derive(Debug)]
@@ -229,6 +230,13 @@ impl Headless {
             let primary = scene.primary_settings(settings)?;
             let image = self.render_primary(scene, view, &primary, layers, watch).await?;
             Ok(Picture { image, samples: 1, noise: None, hits: None })
+        } else if let Some(smooth) = scene.smooth(view, settings) {
+            settings.check_with(scene.appearance())?;
+            let (of_ids, primary) = (smooth.view_of_ids(), PrimarySettings::default());
+            let layers_of_ids = smooth.layers(layers);
+            let ids = self.render_primary(scene, &of_ids, &primary, layers_of_ids, &mut first_half(watch)).await?;
+            let _phase = self.phase("light");
+            smooth.draw(ids, layers, GpuError::Stopped, watch)
         } else {
             self.render_lit(scene, view, settings, layers, watch).await
         }

@@ -26,6 +26,7 @@ use crate::gpu::shader::records::{Hit, SceneSpace};
 use crate::image::{Image, LayerSet, NO_ID};
 use crate::parallel::map;
 use crate::render::{NearestPicture, RenderSettings};
+use crate::smooth::first_half;
 
 /// Callback with the index in the picture and the hit of each pixel that was traced.
 pub(crate) type KeepHit<'a> = dyn FnMut(usize, &Hit) + 'a;
@@ -47,6 +48,14 @@ impl Headless {
         watch: &mut Watch<'_>,
     ) -> Result<Picture, GpuError> {
         let PictureRequest { scene, view, settings, layers, .. } = *request;
+        if let Some(smooth) = request.smooth() {
+            settings.check(scene)?;
+            let primary = RenderSettings::default();
+            let of_ids = PictureRequest { settings: &primary, ..request.of_ids(&smooth) };
+            let ids = Box::pin(self.render_planned(&of_ids, plan, upload_watch, &mut first_half(watch))).await?.image;
+            let _phase = self.phase("light");
+            return smooth.draw(ids, layers, GpuError::Stopped, watch);
+        }
         if plan.by_tiles {
             let image = self.render_by_tiles(request, plan, upload_watch, watch).await?;
             return Ok(Picture { image, samples: 1, noise: None, hits: None });

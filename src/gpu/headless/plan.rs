@@ -16,6 +16,7 @@ use crate::image::LayerSet;
 use crate::recording::TracedPixel;
 use crate::render::RenderSettings;
 use crate::scene::Scene;
+use crate::smooth::SmoothPicture;
 use crate::verify::{Checker, Verdict};
 
 /// The resources that a render by [`Headless`](crate::gpu::Headless) needs. Sizes are upper bounds for buffers and
@@ -80,6 +81,20 @@ impl<'a> PictureRequest<'a> {
     }
 }
 
+impl<'a> PictureRequest<'a> {
+    /// The picture, if it is smooth.
+    pub(crate) fn smooth(&self) -> Option<SmoothPicture<'a>> {
+        let scene = self.scene;
+        let frame = (scene.spheres(), scene.origin());
+        SmoothPicture::new(frame, scene.checked_appearance(), &self.view, self.settings)
+    }
+
+    /// The picture of ids from which a smooth picture follows.
+    pub(crate) fn of_ids(&self, smooth: &SmoothPicture<'a>) -> Self {
+        Self { view: smooth.view_of_ids(), layers: smooth.layers(self.layers), ..*self }
+    }
+}
+
 /// Plans of the structures that will be built for a scene.
 #[derive(Clone, Debug, PartialEq)]
 pub struct StructurePlans {
@@ -101,7 +116,7 @@ impl RenderPlan {
         let PictureRequest { scene, host_bytes_per_pixel, .. } = *request;
         let layers = if keeps_rays { LayerSet::DATA } else { request.layers };
         let (limits, film) = (&device.limits, &request.view.film);
-        let may_be = !keeps_rays && request.is_only && request.settings.integrator.is_primary();
+        let may_be = !keeps_rays && request.is_only;
         let by_tiles = may_be
             && match accel.choice {
                 AccelChoice::Auto => tile_plan::suits(scene, &request.view, &accel, device),

@@ -18,6 +18,8 @@ impl RenderPlan {
     pub fn new(request: &PictureRequest<'_>, structures: StructurePlans, device: &DeviceLimits) -> Self {
         if request.settings.integrator.is_primary() {
             Self::planned(request, structures.accel, device, false)
+        } else if let Some(smooth) = request.smooth() {
+            Self::planned(&request.of_ids(&smooth), structures.accel, device, false)
         } else {
             Self::of_lit(request, structures, device)
         }

@@ -8,6 +8,7 @@ use std::time::Duration;
 use wgpu::{Device, Queue};
 
 use crate::accel::{Accel, AccelChoice, AccelPlan, Brick, BrickBounds, BrickKind, LIST_LEN, Structure};
+use crate::camera::View;
 use crate::gpu::device_shape::{DeviceShape, SubmissionSize};
 use crate::gpu::error::GpuError;
 use crate::gpu::passes::renderer::Renderer;
@@ -18,6 +19,7 @@ use crate::gpu::shader::records::SceneSpace;
 use crate::gpu::shader::textures::{TEXELS_PER_ROW, reads_textures};
 use crate::render::{PrimarySettings, RenderSettings};
 use crate::scene::{Scene, SceneAppearance};
+use crate::smooth::SmoothPicture;
 
 /// Identifies a scene on a device, and the version of its shapes.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -68,6 +70,12 @@ pub struct SceneBuffers {
 }
 
 impl SceneBuffers {
+    /// The picture of these spheres, if it is smooth.
+    pub(crate) fn smooth<'a>(&'a self, view: &View<'a>, settings: &'a RenderSettings) -> Option<SmoothPicture<'a>> {
+        let SceneSummary { spheres, origin, appearance, .. } = &self.summary;
+        SmoothPicture::new((spheres, *origin), appearance, view, settings)
+    }
+
     /// Copies a scene to a device, with a structure that suits it.
     ///
     /// The copy is queued and precedes everything that is submitted later.

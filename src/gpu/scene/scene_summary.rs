@@ -17,6 +17,8 @@ pub(crate) struct SceneSummary {
     /// Origin of the scene's frame, in world space.
     pub(crate) origin: DVec3,
     pub(crate) appearance: Arc<SceneAppearance>,
+    /// The spheres, from which smooth pictures are drawn.
+    pub(crate) spheres: Arc<Vec<[f32; 4]>>,
     pub(crate) emitters: Emitters,
     /// The spheres of `emitters`, in the same order.
     pub(crate) emissive: Vec<EmissiveSphere>,
@@ -31,6 +33,7 @@ impl SceneSummary {
         Self {
             origin: scene.origin(),
             appearance: Arc::clone(scene.checked_appearance()),
+            spheres: Arc::clone(scene.shared_spheres()),
             emissive: EmissiveSphere::all(scene, &emitters),
             emitters,
         }
@@ -41,6 +44,7 @@ impl SceneSummary {
         Self {
             origin: scene.origin(),
             appearance: Arc::new(SceneAppearance::new(LinearRgb::WHITE.into(), 0)),
+            spheres: Arc::default(),
             emitters: Emitters::default(),
             emissive: Vec::new(),
         }

@@ -9,6 +9,7 @@ use crate::image::denoise::REACH;
 use crate::image::outline::{self, Outline};
 use crate::parallel;
 use crate::recording::pixel_at;
+use crate::smooth::SmoothPicture;
 use crate::verify::denoised::{LegalGuide, Light, filtered, near, product};
 use crate::verify::hit::LegalHits;
 use crate::verify::lit::check::LitCheck;
@@ -35,7 +36,11 @@ struct Spot {
 impl LitCheck<'_> {
     /// The finished light of some pixels, by their indices, and their alpha; `None` for a pixel about which hardly
     /// anything is known.
-    pub(crate) fn finished_light(&self, indices: &[usize]) -> Vec<Option<[Interval; 4]>> {
+    pub(crate) fn finished_light(
+        &self,
+        indices: &[usize],
+        smooth: Option<&SmoothPicture<'_>>,
+    ) -> Vec<Option<[Interval; 4]>> {
         let size = self.inputs.size;
         let count = size[0] as usize * size[1] as usize;
         let settings = &self.inputs.settings;
@@ -56,6 +61,8 @@ impl LitCheck<'_> {
             let any_alpha = Interval { low: 0.0, high: 1.0 };
             let alpha = |index: usize| lights[index].as_ref().map_or(any_alpha, |light| light.alpha);
             indices.iter().map(|index| Some(with_alpha(quiet[*index], alpha(*index)))).collect()
+        } else if let Some(smooth) = smooth {
+            self.smooth_light(smooth, indices)
         } else {
             parallel::map(indices.len(), |at| {
                 let light = self.legal_pixel(pixel_at(indices[at], size[0]));

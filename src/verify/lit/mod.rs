@@ -16,4 +16,5 @@ pub(super) mod kernel;
 mod legal_picture;
 pub(super) mod sampling;
 pub(super) mod search;
+mod smooth;
 pub(super) mod upload;

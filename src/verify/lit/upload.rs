@@ -102,7 +102,7 @@ fn check_studio(studio: &Studio, scene: &Scene, inputs: &LitInputs) -> Result<()
     let LitInputs { lighting, .. } = inputs;
     let is_occlusion = match &studio.occlusion {
         None => lighting.occlusion_samples == 0,
-        Some(Occlusion { radius, samples }) => {
+        Some(Occlusion { radius, samples, .. }) => {
             lighting.occlusion_samples == *samples
                 && is_near(lighting.occlusion_radius, radius.unwrap_or(NO_HIT.into()))
         }

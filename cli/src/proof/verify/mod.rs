@@ -49,8 +49,9 @@ pub(crate) fn run(args: &VerifyArgs) -> Result<(), Failure> {
     outputs.write(&run, &certificate, &report, light.as_ref())?;
     let of_picture = verdict(&certificate);
     let Some(JudgedLight { stages, denoiser, rendered, .. }) = light else { return of_picture };
+    let of_light = stages.as_ref().map_or(Ok(()), verdict_of_light);
     let of_denoiser = denoiser.as_ref().map_or(Ok(()), verdict_of_denoiser);
-    worse(worse(worse(of_picture, verdict_of_light(&stages)), of_denoiser), verdict_of_rendered(&rendered))
+    worse(worse(worse(of_picture, of_light), of_denoiser), verdict_of_rendered(&rendered))
 }
 
 /// Returns the first failure, except that a violation takes precedence over an undecided check.

@@ -17,8 +17,8 @@ use pinhole::verify::{
 
 /// The light of a picture, and what was found of it.
 pub(crate) struct JudgedLight {
-    /// The certificate of samples, stage by stage.
-    pub(crate) stages: LitCertificate,
+    /// The certificate of samples, stage by stage, unless nothing is random.
+    pub(crate) stages: Option<LitCertificate>,
     /// The certificate of the denoiser, if the scene asks for it.
     pub(crate) denoiser: Option<DenoiseCertificate>,
     /// The verdicts about the picture that `render` makes.
@@ -103,7 +103,7 @@ impl<'a> Report<'a> {
     pub(crate) fn new(run: &'a Run, certificate: &'a Certificate, judged: Option<&'a JudgedLight>) -> Self {
         let Run { scene, recording, provenance } = run;
         let count = |verdict: &Verdict| (verdict.name(), certificate.count(*verdict));
-        let light = judged.map(|judged| &judged.stages);
+        let light = judged.and_then(|judged| judged.stages.as_ref());
         let denoiser = judged.and_then(|judged| judged.denoiser.as_ref());
         let rendered = judged.map(RenderedReport::new);
         let of_light = light.map_or(Outcome::Proved, LitCertificate::outcome);

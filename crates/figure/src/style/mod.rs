@@ -74,6 +74,9 @@ impl Style {
 #[derive(Clone, Copy, Debug, Default)]
 pub(crate) struct OwnValues {
     pub(crate) occlusion_radius: bool,
+    pub(crate) occlusion_samples: bool,
+    pub(crate) smooth: bool,
+    pub(crate) denoise: bool,
     pub(crate) outline: bool,
     /// Whether a flag gives an outline, and the file does not.
     pub(crate) outline_by_flag: bool,
@@ -86,6 +89,9 @@ pub(crate) struct OwnValues {
 /// The mean radius of spheres, in pixels, below which lines would hide what they are drawn around.
 const LEAST_RADIUS_IN_PIXELS: f64 = 3.0;
 
+/// The mean radius of spheres, in pixels, from which on few of them lie between the centres of pixels.
+const LEAST_RADIUS_OF_SMOOTH: f64 = 0.7;
+
 /// Chooses the values of a style for a scene and a view of it, except those that the scene file gives.
 pub(crate) fn fit(settings: &mut RenderSettings, style: Style, given: OwnValues, scene: &Scene, view: &View<'_>) {
     let subject = scene.subject();
@@ -96,6 +102,35 @@ pub(crate) fn fit(settings: &mut RenderSettings, style: Style, given: OwnValues,
     }
     if let (Some(ground), false) = (&mut settings.ground, given.ground) {
         settings.ground = fit_ground(ground, &subject, view.camera);
+    }
+    let pixels = radius_in_pixels(view, subject.bounds().center(), radius);
+    fit_smooth(settings, given, pixels, |settings| settings.is_smooth(scene, view.camera));
+}
+
+/// Nothing is random, and no noise is removed, if the picture allows it, unless a number of random rays is asked for or
+/// spheres are so small that rays through the centres of pixels miss many.
+fn fit_smooth(
+    settings: &mut RenderSettings,
+    given: OwnValues,
+    radius_in_pixels: Option<f64>,
+    is_smooth: impl Fn(&RenderSettings) -> bool,
+) {
+    let is_wanted = settings.studio_parameters().and_then(|studio| studio.occlusion).is_some_and(|o| o.is_smooth);
+    let are_seen = radius_in_pixels.is_none_or(|radius| radius >= LEAST_RADIUS_OF_SMOOTH);
+    if !is_wanted || !given.smooth && (given.occlusion_samples || !are_seen) {
+        return set_smooth(settings, given.smooth && is_wanted);
+    }
+    let noisy = settings.sampling.denoise;
+    settings.sampling.denoise &= given.denoise;
+    if !is_smooth(settings) {
+        settings.sampling.denoise = noisy;
+        set_smooth(settings, given.smooth);
+    }
+}
+
+fn set_smooth(settings: &mut RenderSettings, is_smooth: bool) {
+    if let Integrator::Studio(Studio { occlusion: Some(occlusion), .. }) = &mut settings.integrator {
+        occlusion.is_smooth = is_smooth;
     }
 }
 

@@ -1,0 +1,201 @@
+//! Smooth pictures: studios in which nothing is random.
+//!
+//! Such a picture follows from the spheres that rays through the centres of pixels hit, which a device or the reference
+//! finds. A pixel is an *edge* if one of its eight neighbours shows another sphere. It then has rays at some fixed places,
+//! which are the same for all pixels; each may hit the spheres that the pixel and its neighbours show. Every sphere in a
+//! pixel is lit once, where it is hit on average. Ambient light is dimmed by [`Openness`].
+//!
+//! So a picture depends only on spheres, view, settings and ids, and is the same on all machines that find the same ids.
+
+use glam::DVec3;
+
+use crate::camera::{Camera, View};
+use crate::image::{Averages, Image, ImageTooLarge, Layer, LayerSet, outline};
+use crate::light::LightKind;
+use crate::parallel;
+use crate::render::{Decision, Picture, Progress, RenderSettings, Watch};
+use crate::scene::material::Material;
+use crate::scene::{Scene, SceneAppearance};
+use lit::Lit;
+use openness::Openness;
+use spots::{Finder, Row, Spot, with_neighbors};
+
+mod lit;
+mod openness;
+mod spots;
+
+/// The number of pixels that are drawn together, which bounds the memory for [`Spot`]s.
+const BAND: usize = 1 << 21;
+
+/// Whether a picture is smooth: occlusion is, no noise is to be removed, all spheres are opaque and matt, there is no
+/// ground, and light arrives from directions without width and without shadows.
+fn is_smooth(settings: &RenderSettings, appearance: &SceneAppearance, camera: &dyn Camera) -> bool {
+    let Some(studio) = settings.studio_parameters() else { return false };
+    let is_sharp = |kind: &LightKind| match kind {
+        LightKind::Head { .. } => true,
+        LightKind::Directional { angular_radius, .. } => *angular_radius == 0.0,
+        LightKind::Point { .. } | LightKind::Sphere { .. } => false,
+    };
+    let is_glossy = |material: &Material| matches!(material, Material::Lambert { specular, .. } if *specular != 0.0);
+    studio.occlusion.is_some_and(|occlusion| occlusion.is_smooth)
+        && !studio.shadows
+        && !settings.sampling.denoise
+        && settings.ground.is_none()
+        && !camera.has_lens()
+        && settings.lights.iter().all(|light| is_sharp(&light.kind))
+        && appearance.is_opaque()
+        && !appearance.surfaces().iter().any(|surface| is_glossy(&surface.material))
+}
+
+impl RenderSettings {
+    /// Returns true if nothing is random in the picture: [`Occlusion::is_smooth`] is true, no noise is to be removed, all
+    /// spheres are opaque and have no gloss, there is no ground and no lens, and lights are at the eye or infinitely far away,
+    /// without width and without shadows. Such a picture follows from the spheres that rays through the centres of pixels
+    /// hit.
+    #[must_use]
+    pub fn is_smooth(&self, scene: &Scene, camera: &dyn Camera) -> bool {
+        is_smooth(self, scene.checked_appearance(), camera)
+    }
+}
+
+/// What a smooth picture shows.
+#[derive(Clone, Copy)]
+pub(crate) struct SmoothPicture<'a> {
+    spheres: &'a [[f32; 4]],
+    appearance: &'a SceneAppearance,
+    /// Origin of the spheres' frame, in world space.
+    origin: DVec3,
+    view: View<'a>,
+    settings: &'a RenderSettings,
+}
+
+impl<'a> SmoothPicture<'a> {
+    /// `None` if the picture is not smooth.
+    pub(crate) fn new(
+        (spheres, origin): (&'a [[f32; 4]], DVec3),
+        appearance: &'a SceneAppearance,
+        view: &View<'a>,
+        settings: &'a RenderSettings,
+    ) -> Option<Self> {
+        let picture = Self { spheres, appearance, origin, view: *view, settings };
+        is_smooth(settings, appearance, view.camera).then_some(picture)
+    }
+
+    /// The view of the ids from which the picture follows: for a part of a film, with the pixels around it.
+    pub(crate) fn view_of_ids(&self) -> View<'a> {
+        View { film: with_neighbors(&self.view.film), ..self.view }
+    }
+
+    /// The layers of the picture of ids from which a picture with these layers follows.
+    pub(crate) fn layers(&self, wanted: LayerSet) -> LayerSet {
+        self.settings.layers_for(wanted).iter().chain([Layer::Id]).collect()
+    }
+
+    /// Draws the picture from that of its ids, by primary rays, with the layers of [`Self::layers`]. The error is `stopped`
+    /// if `watch` stops the work.
+    pub(crate) fn draw<E: From<ImageTooLarge>>(
+        &self,
+        ids: Image,
+        layers: LayerSet,
+        stopped: E,
+        watch: &mut Watch<'_>,
+    ) -> Result<Picture, E> {
+        let (film, total) = (&self.view.film, self.settings.sampling.samples);
+        let mut progress = Progress { samples: 0, total, part: 0.5, noise: None };
+        let mut go_on = |part: f64| {
+            progress.part = 0.5 + 0.5 * part;
+            watch(&progress) != Decision::Stop
+        };
+        let around = with_neighbors(film);
+        let shown = ids.id().unwrap_or_default().to_vec();
+        let mut image = if film == &around {
+            ids
+        } else {
+            let origin = [0, 1].map(|axis| film.origin()[axis] - around.origin()[axis]);
+            ids.cut(origin, [film.width(), film.height()])?
+        };
+        let Some(opacity) = self.draw_from(&shown, &mut image, &mut go_on) else { return Err(stopped) };
+        if let Some(lines) = self.settings.studio_parameters().and_then(|studio| studio.outline) {
+            outline::draw(&mut image, &lines);
+        }
+        image.keep(layers);
+        Ok(Picture { image, samples: total, noise: None, hits: Some(opacity * f64::from(total)) })
+    }
+
+    /// The light of some pixels, given with the ids of three rows of three pixels, of which they are the middle.
+    pub(crate) fn pixels(&self, pixels: &[([u32; 2], [u32; 9])]) -> Vec<Averages> {
+        let Some((finder, lit, mut openness)) = self.tools() else { return Vec::new() };
+        let spots = parallel::map(pixels.len(), |at| {
+            let (pixel, ids) = pixels[at];
+            let mut found = Row::default();
+            finder.pixel(pixel, ids[4], ids.into_iter(), &mut found);
+            found
+        });
+        openness.see(self.spheres, spots.iter().map(|row| row.all.iter()).collect());
+        parallel::map(pixels.len(), |at| self.averages(&lit, &openness, &spots[at].all))
+    }
+
+    /// What finds spots, what lights them, and the tables of openness, without any visible points.
+    fn tools(&self) -> Option<(Finder<'a>, Lit<'a>, Openness)> {
+        let radius = self.settings.studio_parameters()?.occlusion?.radius.unwrap_or(f64::INFINITY);
+        let finder = Finder::new(self.spheres, self.origin, &self.view, &self.settings.sampling);
+        let lit = Lit::new(self.appearance, self.view.camera, self.settings)?;
+        Some((finder, lit, Openness::new(self.spheres, radius)))
+    }
+
+    /// Writes colour, opacity, albedo and samples of all pixels. `go_on` learns the completed part several times, and stops
+    /// the work by false. Returns the sum of all opacities.
+    fn draw_from(&self, ids: &[u32], image: &mut Image, mut go_on: impl FnMut(f64) -> bool) -> Option<f64> {
+        let (finder, lit, mut openness) = self.tools()?;
+        let [width, height] = [image.width(), image.height()].map(|side| side as usize);
+        let mut opacity = 0.0;
+        for rows in parallel::ranges(height, (BAND / width).max(1)) {
+            let spots = parallel::map(rows.len(), |row| finder.row(ids, (rows.start + row) as u32));
+            openness.see(self.spheres, spots.iter().map(|row| row.all.iter()).collect());
+            if !go_on((rows.start + rows.len() / 2) as f64 / height as f64) {
+                return None;
+            }
+            let parts = spots.iter().zip(image.rows_mut(rows.clone())).collect();
+            let sums = parallel::map_parts(parts, |(row, mut to)| {
+                let mut left = &row.all[..];
+                let mut opacity = 0.0;
+                for (column, count) in row.counts.iter().enumerate() {
+                    let (spots, others) = left.split_at(usize::from(*count));
+                    left = others;
+                    let averages = self.averages(&lit, &openness, spots);
+                    opacity += f64::from(averages.alpha);
+                    to.set_averages(column, &averages);
+                }
+                opacity
+            });
+            opacity += sums.into_iter().sum::<f64>();
+            if !go_on(rows.end as f64 / height as f64) {
+                return None;
+            }
+        }
+        Some(opacity)
+    }
+
+    /// The averages over the spots of a pixel.
+    fn averages(&self, lit: &Lit<'_>, openness: &Openness, spots: &[Spot]) -> Averages {
+        let (mut color, mut albedo, mut alpha) = (DVec3::ZERO, DVec3::ZERO, 0.0);
+        for spot in spots {
+            let share = f64::from(spot.share);
+            color += share * lit.color(spot, || openness.at(spot.position, spot.normal).into());
+            albedo += share * lit.albedo(spot.id).min(DVec3::ONE);
+            alpha += share;
+        }
+        color += (1.0 - alpha) * lit.background;
+        let [color, albedo] = [color, albedo].map(|color| color.as_vec3().to_array());
+        let samples = self.settings.sampling.samples;
+        Averages { color, alpha: alpha as f32, albedo, samples, variance: 0.0 }
+    }
+}
+
+/// Tells a caller of the first half of the work, finding ids. It cannot finish early.
+pub(crate) fn first_half(watch: &mut Watch<'_>) -> impl FnMut(&Progress) -> Decision {
+    |progress| match watch(&Progress { samples: 0, part: 0.5 * progress.part, ..*progress }) {
+        Decision::Stop => Decision::Stop,
+        _ => Decision::GoOn,
+    }
+}

@@ -1,0 +1,82 @@
+//! The openness of a point, in f32, direction by direction side by side. `src/verify` computes it in f64.
+
+use glam::{DVec3, Vec3};
+
+use super::Openness;
+use super::cells::corners;
+use super::far::DIRECTIONS;
+
+/// The part of all directions that belongs to each, divided by that of a half sphere, so that it is the height of a cap.
+const PART: f32 = 4.0 / DIRECTIONS as f32;
+
+impl Openness {
+    /// The share of ambient light that reaches a point of a surface, whose tables are complete.
+    pub(in crate::smooth) fn at(&self, position: DVec3, normal: DVec3) -> f32 {
+        let (side, n) = (self.cells.side as f32, normal.as_vec3());
+        // The directions above the horizon, with the cosines of their angles to the normal. Others count nothing.
+        let (mut above, mut count) = (Above::default(), 0);
+        for (k, direction) in self.directions.iter().enumerate() {
+            let cosine = n.dot(*direction);
+            above.put(count, k, *direction, cosine);
+            count += usize::from(cosine > 0.0);
+        }
+        above.put(count, 0, Vec3::ZERO, 0.0);
+        let Above { x: dx, y: dy, z: dz, cosine, number } = above;
+        // The part of each direction that near spheres hide: the most that any of them hides.
+        let mut hidden = [0.0_f32; MOST_ABOVE];
+        for [x, y, z, radius] in self.near_of(position) {
+            let v = (DVec3::new((*x).into(), (*y).into(), (*z).into()) - position).as_vec3();
+            // Most spheres of a list are too far away, or below the horizon.
+            let over = n.dot(v) + radius;
+            if v.length_squared() >= (radius + 2.0 * side) * (radius + 2.0 * side) || over <= 0.01 * side {
+                continue;
+            }
+            let distance = v.length().max(*radius);
+            // It counts less from one side of the cells on, as cells count more, and less where it is below the horizon.
+            let near = (2.0 - (distance - radius) / side).min(1.0);
+            let over = (4.0 * over / side - 0.04).min(1.0);
+            // The sphere is seen in a cap of directions, of which this is the height; a cap that is smaller than the part
+            // of a direction hides as much of it.
+            let sine = radius / distance;
+            let height = 1.0 - (1.0 - sine * sine).max(0.0).sqrt();
+            let most = near * over * (2.0 * height / PART).min(1.0);
+            let a = v * (most / (PART * distance));
+            let b = most * ((height.max(0.5 * PART) - 1.0) / PART + 0.5);
+            for k in 0..MOST_ABOVE {
+                let hides = a.x * dx[k] + a.y * dy[k] + a.z * dz[k] + b;
+                let hides = if hides < most { hides } else { most };
+                hidden[k] = if hidden[k] > hides { hidden[k] } else { hides };
+            }
+        }
+        let (first, parts) = self.cells.tetrahedron(position, normal);
+        let corners = corners(first, parts).map(|(vertex, weight)| (self.far_of(vertex), weight as f32 / 255.0));
+        let (mut open, mut all) = (0.0, 0.0);
+        for k in 0..count {
+            let far = corners.iter().map(|(shares, weight)| weight * f32::from(shares[number[k]])).sum::<f32>();
+            open += cosine[k] * (1.0 - hidden[k]) * far;
+            all += cosine[k];
+        }
+        open / all
+    }
+}
+
+/// The most directions above any horizon: there are 13 to 19, and one more is tried.
+const MOST_ABOVE: usize = 20;
+
+/// Directions, side by side.
+#[derive(Default)]
+struct Above {
+    x: [f32; MOST_ABOVE],
+    y: [f32; MOST_ABOVE],
+    z: [f32; MOST_ABOVE],
+    cosine: [f32; MOST_ABOVE],
+    number: [usize; MOST_ABOVE],
+}
+
+impl Above {
+    fn put(&mut self, at: usize, number: usize, direction: Vec3, cosine: f32) {
+        let at = at.min(MOST_ABOVE - 1);
+        (self.x[at], self.y[at], self.z[at]) = (direction.x, direction.y, direction.z);
+        (self.cosine[at], self.number[at]) = (cosine, number);
+    }
+}

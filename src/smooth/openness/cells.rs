@@ -1,0 +1,226 @@
+//! The cells, and how many of their sample points are inside spheres.
+
+use std::sync::atomic::{AtomicBool, Ordering};
+
+use glam::{DVec3, IVec3};
+
+use crate::parallel;
+
+/// The most cells. They take a byte each.
+const MOST: f64 = 32e6;
+
+/// The number of empty cells on each side.
+const AROUND: f64 = 4.0;
+
+/// The largest side of cells, in terms of [`wanted_side`], up to which near spheres count one by one.
+const MOST_GROWN: f64 = 1.6;
+
+/// Cubes of one size around all spheres.
+#[derive(Debug)]
+pub(super) struct Cells {
+    /// The corner with the least coordinates.
+    pub(super) origin: DVec3,
+    pub(super) side: f64,
+    /// The number of cells along each axis, which is even.
+    pub(super) counts: [usize; 3],
+    /// Whether near spheres count one by one.
+    pub(super) has_near: bool,
+    /// For each cell the number of its sample points, of eight, that are inside spheres.
+    pub(super) filled: Vec<u8>,
+}
+
+impl Cells {
+    pub(super) fn new(spheres: &[[f32; 4]]) -> Self {
+        let (low, high) = bounds(spheres);
+        let wanted = if spheres.is_empty() { 1.0 } else { wanted_side(spheres) };
+        let counts_of = |side: f64| ((high - low) / (2.0 * side)).ceil() * 2.0 + 2.0 * AROUND;
+        let mut side = wanted;
+        while counts_of(side).element_product() > MOST {
+            side *= 1.05;
+        }
+        let counts = counts_of(side).to_array().map(|count| count as usize);
+        let mut cells = Self {
+            origin: low - AROUND * side,
+            side,
+            counts,
+            has_near: side <= MOST_GROWN * wanted,
+            filled: Vec::new(),
+        };
+        cells.filled = cells.fill(spheres);
+        cells
+    }
+
+    /// The position of a point, in cells.
+    fn in_cells(&self, position: DVec3) -> DVec3 {
+        (position - self.origin) / self.side
+    }
+
+    /// Counts the sample points inside spheres. Each thread fills some layers.
+    fn fill(&self, spheres: &[[f32; 4]]) -> Vec<u8> {
+        let [x, y, z] = self.counts;
+        let mut bits = vec![0; x * y * z];
+        let layers = z.div_ceil(parallel::threads()).max(1);
+        parallel::for_each(bits.chunks_mut(x * y * layers).enumerate().collect(), |(part, bits)| {
+            let first = (part * layers) as i64;
+            let samples = 2 * first..2 * (first + (bits.len() / (x * y)) as i64);
+            for sphere in spheres {
+                self.fill_sphere(sphere, &samples, bits);
+            }
+            bits.iter_mut().for_each(|bits: &mut u8| *bits = bits.count_ones() as u8);
+        });
+        bits
+    }
+
+    /// Sets the bits of the sample points inside a sphere, in some layers. The bit of a sample point in its cell has the
+    /// index x + 2 y + 4 z.
+    fn fill_sphere(&self, [x, y, z, radius]: &[f32; 4], layers: &std::ops::Range<i64>, bits: &mut [u8]) {
+        // In units of the distance of sample points, of which the first is at 0.
+        let [cx, cy, cz] = [x, y, z].map(|c| f64::from(*c));
+        let center = 2.0 * self.in_cells(DVec3::new(cx, cy, cz)) - 0.5;
+        let radius = 2.0 * f64::from(*radius) / self.side;
+        let inside = |center: f64, reach: f64| -floor(reach - center)..=floor(center + reach);
+        let (z0, z1) = inside(center.z, radius).into_inner();
+        for z in z0.max(layers.start)..=z1.min(layers.end - 1) {
+            let in_layer = radius * radius - (z as f64 - center.z).powi(2);
+            for y in inside(center.y, in_layer.max(0.0).sqrt()) {
+                let in_row = in_layer - (y as f64 - center.y).powi(2);
+                if in_row < 0.0 {
+                    continue;
+                }
+                let (x0, x1) = inside(center.x, in_row.sqrt()).into_inner();
+                let row = (((z - layers.start) / 2) as usize * self.counts[1] + (y / 2) as usize) * self.counts[0];
+                let shift = 2 * (y & 1) + 4 * (z & 1);
+                for cell in x0.div_euclid(2)..=x1.div_euclid(2) {
+                    let first = u8::from(x0 <= 2 * cell && 2 * cell <= x1);
+                    let second = u8::from(x0 <= 2 * cell + 1 && 2 * cell < x1);
+                    bits[row + cell as usize] |= (first | second << 1) << shift;
+                }
+            }
+        }
+    }
+
+    /// The number of cubes of 2×2×2 cells along each axis, and of vertices.
+    pub(super) fn cube_counts(&self) -> [usize; 3] {
+        self.counts.map(|count| count / 2)
+    }
+
+    /// The distance from a surface at which light of far spheres is looked up.
+    pub(super) fn lift(&self) -> f64 {
+        self.side * if self.has_near { 0.8 } else { 0.4 }
+    }
+
+    /// Marks the vertices and the cubes whose tables the openness of a point needs.
+    pub(super) fn needs(&self, position: DVec3, normal: DVec3, vertices: &[AtomicBool], cubes: &[AtomicBool]) {
+        let mark = |all: &[AtomicBool], place| {
+            all[index(self.cube_counts(), place) as usize].store(true, Ordering::Relaxed);
+        };
+        let (first, parts) = self.tetrahedron(position, normal);
+        corners(first, parts).into_iter().for_each(|(vertex, _)| mark(vertices, vertex));
+        // A kernel rounds, and may find the point in the next cube.
+        let place = self.in_cells(position) / 2.0;
+        let [low, high] = [-1e-3, 1e-3].map(|margin| self.within(place + margin, 1));
+        for z in low.z..=high.z {
+            for y in low.y..=high.y {
+                (low.x..=high.x).for_each(|x| mark(cubes, IVec3::new(x, y, z)));
+            }
+        }
+    }
+
+    /// The whole part of a place among cubes or vertices, of which there are `more` beyond it along each axis.
+    fn within(&self, place: DVec3, more: i32) -> IVec3 {
+        let counts = self.cube_counts();
+        let place = place.to_array().map(floor);
+        let within = |axis: usize| place[axis].clamp(0, counts[axis] as i64 - i64::from(more)) as i32;
+        IVec3::new(within(0), within(1), within(2))
+    }
+
+    /// The vertex with the least coordinates around the place at which the light of far spheres is looked up for a point,
+    /// and the place's distance from it along each axis, as a part of the distance of vertices.
+    pub(super) fn tetrahedron(&self, position: DVec3, normal: DVec3) -> (IVec3, DVec3) {
+        let place = (self.in_cells(position + self.lift() * normal) - 0.5) / 2.0;
+        let first = self.within(place, 2);
+        (first, (place - first.as_dvec3()).clamp(DVec3::ZERO, DVec3::ONE))
+    }
+
+    /// The number of a cube.
+    pub(super) fn cube_of(&self, position: DVec3) -> u32 {
+        index(self.cube_counts(), self.within(self.in_cells(position) / 2.0, 1))
+    }
+
+    /// The cell of a vertex.
+    pub(super) fn vertex(&self, number: u32) -> IVec3 {
+        let [x, y, _] = self.cube_counts().map(|count| count as u32);
+        2 * IVec3::new((number % x) as i32, (number / x % y) as i32, (number / x / y) as i32)
+    }
+
+    /// The middle of a cube.
+    pub(super) fn middle(&self, number: u32) -> DVec3 {
+        self.origin + self.side * (self.vertex(number) + IVec3::ONE).as_dvec3()
+    }
+}
+
+/// The index of a cell in a grid.
+pub(super) fn index(counts: [usize; 3], cell: IVec3) -> u32 {
+    let [x, y, z] = cell.to_array().map(|c| c as usize);
+    ((z * counts[1] + y) * counts[0] + x) as u32
+}
+
+/// The largest whole number that is not larger. It is quicker than a call of the standard library's function, which old
+/// processors need.
+pub(super) fn floor(x: f64) -> i64 {
+    let whole = x as i64;
+    whole - i64::from(whole as f64 > x)
+}
+
+/// The vertices of the tetrahedron around a place between eight vertices, with their barycentric weights: the way from
+/// the first corner to the last one along the axes, the largest part first.
+pub(super) fn corners(first: IVec3, parts: DVec3) -> [(IVec3, f64); 4] {
+    let mut axes = [0, 1, 2];
+    axes.sort_by(|a, b| parts[*b].total_cmp(&parts[*a]));
+    let [a, b, c] = axes.map(|axis| parts[axis]);
+    let second = first + IVec3::AXES[axes[0]];
+    let third = second + IVec3::AXES[axes[1]];
+    [(first, 1.0 - a), (second, a - b), (third, b - c), (first + IVec3::ONE, c)]
+}
+
+/// The corners of the box around all spheres.
+fn bounds(spheres: &[[f32; 4]]) -> (DVec3, DVec3) {
+    let parts = parallel::map_chunks(spheres, |_, spheres| {
+        spheres.iter().fold((DVec3::INFINITY, DVec3::NEG_INFINITY), |(low, high), sphere| {
+            let [x, y, z, radius] = sphere.map(f64::from);
+            let center = DVec3::new(x, y, z);
+            (low.min(center - radius), high.max(center + radius))
+        })
+    });
+    if spheres.is_empty() {
+        return (DVec3::ZERO, DVec3::ZERO);
+    }
+    parts.into_iter().fold((DVec3::INFINITY, DVec3::NEG_INFINITY), |all, part| (all.0.min(part.0), all.1.max(part.1)))
+}
+
+/// The side that cells should have: the mean radius, weighted by surface, but at most 1.5 times the radius below which
+/// lies a quarter of all surface, so that small spheres beside large ones still cover several sample points.
+fn wanted_side(spheres: &[[f32; 4]]) -> f64 {
+    /// Radii whose leading bits are the same are together. The order of positive numbers is that of their bits.
+    const SHIFT: u32 = 18;
+    const COUNT: usize = 1 << (32 - SHIFT);
+    let parts = parallel::map_chunks(spheres, |_, spheres| {
+        let mut sums = vec![[0.0; 2]; COUNT];
+        for [.., radius] in spheres {
+            let (sum, radius) = (&mut sums[(radius.to_bits() >> SHIFT) as usize], f64::from(*radius));
+            *sum = [sum[0] + radius.powi(2), sum[1] + radius.powi(3)];
+        }
+        sums
+    });
+    let mut sums = vec![[0.0; 2]; COUNT];
+    for part in parts {
+        sums.iter_mut().zip(part).for_each(|(sum, part)| *sum = [sum[0] + part[0], sum[1] + part[1]]);
+    }
+    let [surface, volume] = [0, 1].map(|k| sums.iter().map(|sum| sum[k]).sum::<f64>());
+    let mut below = 0.0;
+    let quarter = sums.iter().find(|[surface_here, _]| {
+        below += surface_here;
+        below >= 0.25 * surface
+    });
+    (volume / surface).min(1.5 * quarter.map_or(f64::MAX, |[surface, volume]| volume / surface))
+}

@@ -1,0 +1,242 @@
+//! Smooth pictures: their openness against rays, that it belongs to the surface and not to the camera, parts, data of any
+//! kind, and the judgement of the checker.
+
+use pinhole::camera::{Camera, OrthographicCamera, PinholeCamera, Pose};
+use pinhole::geometry::math::unit;
+use pinhole::glam::DVec3;
+use pinhole::light::{Light, LightFrame, LightKind};
+use pinhole::render::{Occlusion, Outline, Sampling, Studio};
+use pinhole::scene::material::{Material, SurfaceProperties};
+use pinhole::verify::finished::{FinishedRequest, PixelVerdict};
+use pinhole::verify::written::{Samples, WrittenPicture};
+use pinhole::verify::{Checker, Outcome};
+use pinhole::{Encoding, Film, Image, Integrator, LayerSet, LinearRgb, RenderSettings, Scene, View, cpu};
+
+use crate::support::spheres::{self, Spheres};
+
+/// Settings of white ambient light alone, so that a white sphere has the colour of its openness.
+fn ambient(radius: Option<f64>, samples: u32) -> RenderSettings {
+    let occlusion = Some(Occlusion { radius, is_smooth: true, ..Occlusion::default() });
+    let studio = Studio { ambient: LinearRgb::WHITE, shadows: false, occlusion, ..Studio::default() };
+    RenderSettings {
+        integrator: Integrator::Studio(studio),
+        sampling: Sampling { samples, ..Sampling::default() },
+        background: LinearRgb::BLACK,
+        ..RenderSettings::default()
+    }
+}
+
+fn white(spheres: &Spheres) -> Scene {
+    Scene::from_f32(spheres.clone(), LinearRgb::WHITE).unwrap()
+}
+
+/// A camera that sees the whole scene from the side.
+fn camera(scene: &Scene) -> PinholeCamera {
+    let subject = scene.bounds_to_frame();
+    let distance = 1.5 * subject.size().length();
+    let toward = unit(DVec3::new(0.4, 0.3, 1.0)).unwrap();
+    let pose = Pose::looking_at(subject.center() + distance * toward, subject.center(), DVec3::Y).unwrap();
+    PinholeCamera::with_vertical_fov(pose, 0.6, 1.0).unwrap()
+}
+
+fn picture(scene: &Scene, camera: &dyn Camera, film: Film, settings: &RenderSettings) -> Image {
+    assert!(settings.is_smooth(scene, camera));
+    let search = cpu::SearchStructure::new(scene).unwrap();
+    cpu::render(&search, &View::new(camera, film), settings, LayerSet::ALL).unwrap()
+}
+
+/// The share of 400 directions, spread by the cosine, in which no sphere is near.
+fn by_rays(spheres: &Spheres, own: u32, point: DVec3, normal: DVec3, radius: f64) -> f64 {
+    let (right, up) = normal.any_orthonormal_pair();
+    let count = 400;
+    let is_open = |k: &usize| {
+        let share = (*k as f64 + 0.5) / count as f64;
+        let (sin, cos) = (2.399_963 * *k as f64).sin_cos();
+        let direction = share.sqrt() * (cos * right + sin * up) + (1.0 - share).sqrt() * normal;
+        !spheres.iter().enumerate().any(|(id, sphere)| {
+            let [x, y, z, r] = sphere.map(f64::from);
+            let to = DVec3::new(x, y, z) - point;
+            let along = to.dot(direction);
+            let half = (r * r - (to - along * direction).length_squared()).max(0.0).sqrt();
+            id as u32 != own && half > 0.0 && along + half > 0.0 && along - half < radius
+        })
+    };
+    (0..count).filter(is_open).count() as f64 / count as f64
+}
+
+/// Chains of balls with rows of smaller balls between them, as sticks are drawn.
+fn chains() -> Spheres {
+    let mut rng = fastrand::Rng::with_seed(3);
+    let mut all = Vec::new();
+    for _ in 0..12 {
+        let mut at = [0; 3].map(|_| 6.0 * rng.f32());
+        for _ in 0..8 {
+            let next = at.map(|x| (x + 1.6 * (rng.f32() - 0.5)).clamp(0.0, 6.0));
+            all.push([at[0], at[1], at[2], 0.4]);
+            for step in 1..4 {
+                let [x, y, z] = [0, 1, 2].map(|axis| at[axis] + 0.25 * step as f32 * (next[axis] - at[axis]));
+                all.push([x, y, z, 0.2]);
+            }
+            at = next;
+        }
+    }
+    all
+}
+
+#[test]
+fn openness_is_close_to_rays() {
+    let packed = spheres::scaled(&spheres::random(700, 5, |rng| 0.04 + 0.02 * rng.f32()), 10.0);
+    let slab = spheres::lattice(14).into_iter().filter(|[_, _, z, _]| *z < 4.0).collect();
+    let even = spheres::scaled(&spheres::random(400, 6, |_| 0.05), 8.0);
+    for (name, spheres) in [("packed", packed), ("slab", slab), ("even", even), ("chains", chains())] {
+        let scene = white(&spheres);
+        let radius = 0.2 * scene.bounds_to_frame().size().length();
+        let camera = camera(&scene);
+        let image = picture(&scene, &camera, Film::new(40, 40).unwrap(), &ambient(Some(radius), 1));
+        let hits = image.id().unwrap().iter().zip(image.position().unwrap()).zip(image.normal().unwrap());
+        let mut errors: Vec<f64> = (hits.zip(image.color()))
+            .filter(|(((id, _), _), _)| **id != pinhole::image::NO_ID)
+            .step_by(2)
+            .map(|(((id, position), normal), color)| {
+                let [point, normal] = [position, normal].map(|v| DVec3::from(v.map(f64::from)));
+                f64::from(color[0]) - by_rays(&spheres, *id, point - scene.origin(), normal, radius)
+            })
+            .collect();
+        let rms = (errors.iter().map(|e| e * e).sum::<f64>() / errors.len() as f64).sqrt();
+        errors.sort_by(|a, b| a.abs().total_cmp(&b.abs()));
+        let most = errors[errors.len() * 95 / 100].abs();
+        assert!(errors.len() > 150 && rms < 0.055 && most < 0.11, "{name}: {rms} rms, 95 % below {most}");
+    }
+}
+
+/// The centres of some pixels are those of a picture with three times as many.
+#[test]
+fn openness_belongs_to_a_surface_and_not_to_a_camera() {
+    let scene = white(&spheres::scaled(&spheres::random(500, 7, |_| 0.06), 4.0));
+    let middle = scene.bounds_to_frame().center();
+    let looking = |from: DVec3| Pose::looking_at(middle + from, middle, DVec3::Y).unwrap();
+    let camera = |pose| OrthographicCamera::new(pose, [3.0, 3.0]).unwrap();
+    let settings = ambient(None, 1);
+    let of =
+        |side: u32, from: DVec3| picture(&scene, &camera(looking(from)), Film::new(side, side).unwrap(), &settings);
+    let [small, large] = [of(21, DVec3::Z * 9.0), of(63, DVec3::Z * 20.0)];
+    let mut compared = 0;
+    for (index, (color, id)) in small.color().iter().zip(small.id().unwrap()).enumerate() {
+        let [i, j] = [index % 21, index / 21];
+        let other = (3 * j + 1) * 63 + 3 * i + 1;
+        assert_eq!(large.id().unwrap()[other], *id);
+        assert!((large.color()[other][0] - color[0]).abs() < 1e-5, "{color:?} {:?}", large.color()[other]);
+        compared += usize::from(*id != pinhole::image::NO_ID);
+    }
+    assert!(compared > 100, "{compared}");
+}
+
+#[test]
+fn parts_of_a_film_are_as_the_whole() {
+    let scene = white(&spheres::random(300, 8, |_| 0.07));
+    let (camera, film) = (camera(&scene), Film::new(24, 18).unwrap());
+    let mut settings = ambient(None, 4);
+    if let Integrator::Studio(studio) = &mut settings.integrator {
+        studio.outline = Some(Outline::thin());
+    }
+    let whole = picture(&scene, &camera, film, &settings);
+    let (unfinished, layers) = (settings.unfinished(), settings.layers_for(LayerSet::ALL));
+    let mut joined = Image::new(24, 18, layers).unwrap();
+    for (origin, size) in [([0, 0], [11, 7]), ([11, 0], [13, 7]), ([0, 7], [23, 11]), ([23, 7], [1, 11])] {
+        let part = cpu::render(&scene, &View::new(&camera, film.part(origin, size).unwrap()), &unfinished, layers);
+        joined.put(&part.unwrap(), origin).unwrap();
+    }
+    let joined = cpu::finish(joined, &settings, LayerSet::ALL);
+    assert!(joined.to_le_bytes() == whole.to_le_bytes());
+}
+
+/// Spheres that coincide, contain others, are of very different sizes or far apart: every colour is an openness.
+#[test]
+fn any_spheres_can_be_drawn() {
+    let mut with_a_giant = spheres::random(200, 9, |_| 1e-3);
+    with_a_giant.push([0.0, 0.0, -2e3, 1e3]);
+    for (name, spheres) in [
+        ("coincident", spheres::coincident(3000)),
+        ("concentric", spheres::concentric(300)),
+        ("four decades", spheres::four_decades(300)),
+        ("one around all", spheres::one_around_all(300)),
+        ("clusters", spheres::clusters(5, 60)),
+        ("far", spheres::far(200)),
+        ("flat", spheres::flat(300)),
+        ("needle", spheres::needle(100)),
+        ("outlier", spheres::outlier(300)),
+        ("geometric", spheres::geometric(50)),
+        ("distant sheet", spheres::distant_sheet(100)),
+        ("a giant", with_a_giant),
+        ("one", vec![[1.0, 2.0, 3.0, 0.5]]),
+        ("nothing", Vec::new()),
+    ] {
+        let scene = white(&spheres);
+        for radius in [None, Some(1e-6), Some(1e9)] {
+            let image = picture(&scene, &camera(&scene), Film::new(16, 16).unwrap(), &ambient(radius, 4));
+            let is_share = |color: &[f32; 3]| color.iter().all(|c| (0.0..=1.0 + 1e-6).contains(c));
+            assert!(image.color().iter().all(is_share), "{name}");
+        }
+    }
+}
+
+#[test]
+fn pictures_with_chance_are_not_smooth() {
+    let scene = white(&spheres::random(20, 1, |_| 0.1));
+    let camera = camera(&scene);
+    let plain = ambient(None, 2);
+    assert!(plain.is_smooth(&scene, &camera));
+    let mut sun = plain.clone();
+    let kind = LightKind::Directional { toward: DVec3::Y, strength: LinearRgb::WHITE, angular_radius: 0.1 };
+    sun.lights.push(Light { kind, frame: LightFrame::World });
+    assert!(!sun.is_smooth(&scene, &camera));
+    assert!(!plain.with_denoise(true).is_smooth(&scene, &camera));
+    assert!(!plain.by_primary_rays().is_smooth(&scene, &camera));
+    let clear = SurfaceProperties { opacity: 0.5, ..SurfaceProperties::default() };
+    let glossy = Material::Lambert { specular: 0.1, roughness: 0.2 };
+    for surface in [clear, SurfaceProperties { material: glossy, ..SurfaceProperties::default() }] {
+        assert!(!plain.is_smooth(&scene.clone().with_surface(surface), &camera));
+    }
+}
+
+/// The reference's own picture is exact; a pixel that was changed, or drawn without openness, is a violation.
+#[test]
+fn forged_pixels_are_violations() {
+    let scene = white(&spheres::random(400, 10, |_| 0.06));
+    let (camera, film) = (camera(&scene), Film::new(40, 40).unwrap());
+    let view = View::new(&camera, film);
+    let mut settings = ambient(Some(0.4), 4);
+    for has_lines in [false, true] {
+        if let (true, Integrator::Studio(studio)) = (has_lines, &mut settings.integrator) {
+            studio.outline = Some(Outline::thin());
+        }
+        let image = picture(&scene, &camera, film, &settings);
+        let encoding = Encoding::default();
+        let exact: Vec<[f32; 4]> = image.color().iter().map(|[r, g, b]| [*r, *g, *b, 1.0]).collect();
+        let checker = Checker::new(&scene).unwrap();
+        let judged = |pixels: &[[f32; 4]]| {
+            let [picture, exact] = [pixels, &exact].map(|pixels| WrittenPicture {
+                size: [40, 40],
+                samples: Samples::Linear(pixels),
+                encoding: &encoding,
+            });
+            let request = FinishedRequest {
+                views: &[view],
+                settings: &settings,
+                picture: &picture,
+                exact: &exact,
+                annotate: None,
+            };
+            checker.certify_finished(request).unwrap()
+        };
+        assert_eq!(judged(&exact).outcome(), Outcome::Proved);
+        let mut forged = exact.clone();
+        for [i, j] in [[20, 20], [0, 0], [17, 23]] {
+            forged[j * 40 + i][1] += 0.02;
+        }
+        let found = judged(&forged);
+        assert_eq!(found.count(PixelVerdict::Violated), 3, "{has_lines}");
+        let bright: Vec<[f32; 4]> = exact.iter().map(|pixel| pixel.map(|c| c.min(1.0).sqrt())).collect();
+        assert_eq!(judged(&bright).outcome(), Outcome::Violated);
+    }
+}
