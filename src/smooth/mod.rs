@@ -48,7 +48,7 @@ fn is_smooth(settings: &RenderSettings, appearance: &SceneAppearance, camera: &d
 }
 
 impl RenderSettings {
-    /// Returns true if nothing is random in the picture: [`Occlusion::is_smooth`] is true, no noise is to be removed, all
+    /// Returns true if nothing is random in the picture: [`Occlusion::is_smooth`](crate::render::Occlusion::is_smooth) is true, no noise is to be removed, all
     /// spheres are opaque and have no gloss, there is no ground and no lens, and lights are at the eye or infinitely far away,
     /// without width and without shadows. Such a picture follows from the spheres that rays through the centres of pixels
     /// hit.

@@ -72,10 +72,12 @@ pub(crate) fn suits(scene: &Scene, view: &View<'_>, plan: &AccelPlan, device: &D
 /// The tiles of a whole picture; `None` if it cannot have any.
 pub(crate) fn of_picture(scene: &Scene, view: &View<'_>, plan: &AccelPlan) -> Option<TileView> {
     let kinds = [CameraKind::Pinhole, CameraKind::Orthographic, CameraKind::ThinLens, CameraKind::Fisheye];
-    if !kinds.contains(&view.camera.kind()) || scene.is_empty() {
+    let size = [view.film.width(), view.film.height()];
+    // Tiles are numbered in 16 bits along each axis.
+    let are_few = size.iter().all(|side| side.div_ceil(SIDE) <= u32::from(u16::MAX));
+    if !kinds.contains(&view.camera.kind()) || scene.is_empty() || !are_few {
         return None;
     }
-    let size = [view.film.width(), view.film.height()];
     let tile = Tile { origin: [0, 0], size, in_target: [0, 0] };
     tile_view(view, &space_of(scene.origin(), plan), plan.statistics.margin(), tile)
 }

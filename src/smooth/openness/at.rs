@@ -24,8 +24,10 @@ impl Openness {
         let Above { x: dx, y: dy, z: dz, cosine, number } = above;
         // The part of each direction that near spheres hide: the most that any of them hides.
         let mut hidden = [0.0_f32; MOST_ABOVE];
-        for [x, y, z, radius] in self.near_of(position) {
-            let v = (DVec3::new((*x).into(), (*y).into(), (*z).into()) - position).as_vec3();
+        let (near, middle) = self.near_of(position);
+        let position_in_cube = (position - middle).as_vec3();
+        for [x, y, z, radius] in near {
+            let v = Vec3::new(*x, *y, *z) - position_in_cube;
             // Most spheres of a list are too far away, or below the horizon.
             let over = n.dot(v) + radius;
             if v.length_squared() >= (radius + 2.0 * side) * (radius + 2.0 * side) || over <= 0.01 * side {

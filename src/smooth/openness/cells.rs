@@ -175,12 +175,15 @@ pub(super) fn floor(x: f64) -> i64 {
 /// The vertices of the tetrahedron around a place between eight vertices, with their barycentric weights: the way from
 /// the first corner to the last one along the axes, the largest part first.
 pub(super) fn corners(first: IVec3, parts: DVec3) -> [(IVec3, f64); 4] {
-    let mut axes = [0, 1, 2];
-    axes.sort_by(|a, b| parts[*b].total_cmp(&parts[*a]));
-    let [a, b, c] = axes.map(|axis| parts[axis]);
-    let second = first + IVec3::AXES[axes[0]];
-    let third = second + IVec3::AXES[axes[1]];
-    [(first, 1.0 - a), (second, a - b), (third, b - c), (first + IVec3::ONE, c)]
+    let [x, y, z] = parts.to_array();
+    let [longest, shortest] = if x >= y {
+        [if x >= z { 0 } else { 2 }, if y < z { 1 } else { 2 }]
+    } else {
+        [if y >= z { 1 } else { 2 }, if x < z { 0 } else { 2 }]
+    };
+    let [a, b, c] = [longest, 3 - longest - shortest, shortest].map(|axis| parts[axis]);
+    let last = first + IVec3::ONE;
+    [(first, 1.0 - a), (first + IVec3::AXES[longest], a - b), (last - IVec3::AXES[shortest], b - c), (last, c)]
 }
 
 /// The corners of the box around all spheres.

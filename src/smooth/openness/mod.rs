@@ -43,7 +43,7 @@ pub(super) struct Openness {
     cubes: Vec<u32>,
     /// The end of each list in `near`.
     ends: Vec<u32>,
-    /// Centres and radii of the spheres near the visible points of each cube.
+    /// Centres, counted from the middle of the cube, and radii of the spheres near the visible points of each cube.
     near: Vec<[f32; 4]>,
     /// The number of lists that lack spheres.
     cut: usize,
@@ -86,11 +86,12 @@ impl Openness {
         self.cut += cut;
     }
 
-    /// The spheres that are near a visible point.
-    pub(super) fn near_of(&self, position: DVec3) -> &[[f32; 4]] {
-        let list = self.cubes[self.cells.cube_of(position) as usize] as usize;
+    /// The spheres that are near a visible point, and the middle of its cube.
+    fn near_of(&self, position: DVec3) -> (&[[f32; 4]], DVec3) {
+        let cube = self.cells.cube_of(position);
+        let list = self.cubes[cube as usize] as usize;
         let start = list.checked_sub(1).map_or(0, |before| self.ends[before] as usize);
-        &self.near[start..self.ends[list] as usize]
+        (&self.near[start..self.ends[list] as usize], self.cells.middle(cube))
     }
 
     /// The shares of light, of 255, that pass along each direction from a vertex.

@@ -60,7 +60,7 @@ impl Levels {
         Self(levels.collect())
     }
 
-    /// The list of a cube, and whether it lacks spheres.
+    /// The list of a cube, with centres counted from its middle, and whether it lacks spheres.
     fn list(&self, cells: &Cells, spheres: &[[f32; 4]], cube: u32) -> (Vec<[f32; 4]>, bool) {
         let middle = cells.middle(cube);
         let mut ids = Vec::new();
@@ -89,7 +89,12 @@ impl Levels {
             ids.truncate(MOST);
         }
         ids.sort_unstable();
-        (ids.iter().map(|id| spheres[*id as usize]).collect(), is_cut)
+        let from_middle = |id: &u32| {
+            let (center, radius) = sphere(spheres, *id);
+            let [x, y, z] = (center - middle).as_vec3().to_array();
+            [x, y, z, radius as f32]
+        };
+        (ids.iter().map(from_middle).collect(), is_cut)
     }
 
     /// The lists of some cubes, one after the other; their ends; and the number of those that lack spheres.
