@@ -88,5 +88,5 @@ pub(super) fn primary_watched(
             Decision::Finish | Decision::Stop => Err(RenderError::Stopped),
         }
     })?;
-    Ok(Picture { image, samples: 1, noise: None, hits: None })
+    Ok(Picture::by_primary_rays(image))
 }

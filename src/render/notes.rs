@@ -2,9 +2,9 @@
 
 use std::f64::consts::PI;
 
-use super::{Integrator, RenderSettings};
+use super::{Integrator, RenderSettings, Studio};
 use crate::image::color::LinearRgb;
-use crate::light::SkyLight;
+use crate::light::{Light, LightKind, SkyLight};
 use crate::scene::Scene;
 use crate::scene::material::{Material, SurfaceProperties};
 
@@ -16,7 +16,22 @@ impl RenderSettings {
         let is_translucent = || !scene.checked_appearance().is_opaque();
         let needs_paths =
             || any(|surface| matches!(surface.material, Material::Conductor { .. } | Material::Dielectric { .. }));
+        let is_soft = |light: &Light| match light.kind {
+            LightKind::Head { .. } => false,
+            LightKind::Directional { angular_radius, .. } => angular_radius > 0.0,
+            LightKind::Point { .. } | LightKind::Sphere { .. } => true,
+        };
+        let has_chance = |studio: &Studio| {
+            let others = self.sampling.denoise || self.ground.is_some() || self.lights.iter().any(is_soft);
+            studio.shadows || others || is_translucent()
+        };
+        let is_asked = |studio: &&Studio| studio.occlusion.is_some_and(|occlusion| occlusion.is_smooth);
         let notes = [
+            (
+                self.studio_parameters().filter(is_asked).is_some_and(has_chance),
+                "ambient occlusion is not smooth but sampled at random, because shadows, a ground, lights with a width or \
+                 place, denoising or opacity are asked for; leave these out, or `smooth` in `[studio.occlusion]`",
+            ),
             (
                 self.is_dark(scene),
                 "no light: nothing shines on this scene, and its spheres will be black; add [[lights]], or give a light, \

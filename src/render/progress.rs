@@ -49,6 +49,16 @@ pub struct Picture {
     /// Number of camera rays that hit something, over all samples, weighted by opacity. It is `None` for pictures of
     /// primary rays, whose hits are not counted.
     pub hits: Option<f64>,
+    /// Number of places in a smooth picture near which there are more than 256 spheres, so that those which look smallest
+    /// do not dim ambient light.
+    pub crowded: usize,
+}
+
+impl Picture {
+    /// A picture by one ray through the centre of each pixel.
+    pub(crate) fn by_primary_rays(image: Image) -> Self {
+        Self { image, samples: 1, noise: None, hits: None, crowded: 0 }
+    }
 }
 
 /// Sums over all pixels.

@@ -18,7 +18,7 @@ use crate::scene::material::Material;
 use crate::scene::{Scene, SceneAppearance};
 use lit::Lit;
 use openness::Openness;
-use spots::{Finder, Row, Spot, with_neighbors};
+use spots::{Finder, Row, Spot, rays, with_neighbors};
 
 mod lit;
 mod openness;
@@ -86,6 +86,14 @@ impl<'a> SmoothPicture<'a> {
         View { film: with_neighbors(&self.view.film), ..self.view }
     }
 
+    /// The bytes of the host's memory for drawing, about.
+    #[cfg(feature = "gpu")]
+    pub(crate) fn bytes(&self) -> u64 {
+        let pixels = self.view.film.pixel_count();
+        let spots = pixels.min(BAND as u64) * 2 * size_of::<Spot>() as u64;
+        spots + Openness::bytes(self.spheres, pixels)
+    }
+
     /// The layers of the picture of ids from which a picture with these layers follows.
     pub(crate) fn layers(&self, wanted: LayerSet) -> LayerSet {
         self.settings.layers_for(wanted).iter().chain([Layer::Id]).collect()
@@ -100,7 +108,7 @@ impl<'a> SmoothPicture<'a> {
         stopped: E,
         watch: &mut Watch<'_>,
     ) -> Result<Picture, E> {
-        let (film, total) = (&self.view.film, self.settings.sampling.samples);
+        let (film, total) = (&self.view.film, rays(&self.settings.sampling));
         let mut progress = Progress { samples: 0, total, part: 0.5, noise: None };
         let mut go_on = |part: f64| {
             progress.part = 0.5 + 0.5 * part;
@@ -114,12 +122,12 @@ impl<'a> SmoothPicture<'a> {
             let origin = [0, 1].map(|axis| film.origin()[axis] - around.origin()[axis]);
             ids.cut(origin, [film.width(), film.height()])?
         };
-        let Some(opacity) = self.draw_from(&shown, &mut image, &mut go_on) else { return Err(stopped) };
+        let Some((opacity, crowded)) = self.draw_from(&shown, &mut image, &mut go_on) else { return Err(stopped) };
         if let Some(lines) = self.settings.studio_parameters().and_then(|studio| studio.outline) {
             outline::draw(&mut image, &lines);
         }
         image.keep(layers);
-        Ok(Picture { image, samples: total, noise: None, hits: Some(opacity * f64::from(total)) })
+        Ok(Picture { image, samples: total, noise: None, hits: Some(opacity * f64::from(total)), crowded })
     }
 
     /// The light of some pixels, given with the ids of three rows of three pixels, of which they are the middle.
@@ -144,8 +152,8 @@ impl<'a> SmoothPicture<'a> {
     }
 
     /// Writes colour, opacity, albedo and samples of all pixels. `go_on` learns the completed part several times, and stops
-    /// the work by false. Returns the sum of all opacities.
-    fn draw_from(&self, ids: &[u32], image: &mut Image, mut go_on: impl FnMut(f64) -> bool) -> Option<f64> {
+    /// the work by false. Returns the sum of all opacities, and `Picture::crowded`.
+    fn draw_from(&self, ids: &[u32], image: &mut Image, mut go_on: impl FnMut(f64) -> bool) -> Option<(f64, usize)> {
         let (finder, lit, mut openness) = self.tools()?;
         let [width, height] = [image.width(), image.height()].map(|side| side as usize);
         let mut opacity = 0.0;
@@ -173,7 +181,7 @@ impl<'a> SmoothPicture<'a> {
                 return None;
             }
         }
-        Some(opacity)
+        Some((opacity, openness.crowded))
     }
 
     /// The averages over the spots of a pixel.
@@ -187,7 +195,7 @@ impl<'a> SmoothPicture<'a> {
         }
         color += (1.0 - alpha) * lit.background;
         let [color, albedo] = [color, albedo].map(|color| color.as_vec3().to_array());
-        let samples = self.settings.sampling.samples;
+        let samples = rays(&self.settings.sampling);
         Averages { color, alpha: alpha as f32, albedo, samples, variance: 0.0 }
     }
 }

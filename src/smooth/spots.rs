@@ -64,7 +64,7 @@ impl<'a> Finder<'a> {
         let seed = pixel_seed([0, 0], sampling.seed);
         let offset = |k| DVec2::from(pair(seed, k, 0).map(|u| filter::offset(&table, u)));
         // A single ray is at the centre.
-        let offsets = (0..sampling.samples).filter(|_| sampling.samples > 1).map(offset).collect();
+        let offsets = (0..rays(sampling)).filter(|_| sampling.samples > 1).map(offset).collect();
         Self { spheres, origin, view: *view, around: with_neighbors(&view.film), offsets }
     }
 
@@ -190,6 +190,11 @@ impl<'a> Finder<'a> {
             share: count as f32 / all as f32,
         }
     }
+}
+
+/// The number of rays in a pixel at an edge. More than 256 change nothing that is seen.
+pub(super) fn rays(sampling: &Sampling) -> u32 {
+    sampling.samples.min(256)
 }
 
 /// The pixels of a film and, if it is a part of another one, those around it.

@@ -109,6 +109,21 @@ fn openness_is_close_to_rays() {
     }
 }
 
+/// Spheres farther away than the radius do not occlude.
+#[test]
+fn a_small_radius_leaves_light() {
+    let spheres = spheres::scaled(&spheres::random(700, 5, |_| 0.05), 10.0);
+    let scene = white(&spheres);
+    let mean = |radius: f64| {
+        let image = picture(&scene, &camera(&scene), Film::new(40, 40).unwrap(), &ambient(Some(radius), 1));
+        let hits = image.color().iter().zip(image.id().unwrap()).filter(|(_, id)| **id != pinhole::image::NO_ID);
+        let colors: Vec<f32> = hits.map(|(color, _)| color[0]).collect();
+        colors.iter().sum::<f32>() / colors.len() as f32
+    };
+    let means = [1e-3, 0.1, 0.5, 1.0, 3.0].map(mean);
+    assert!(means.is_sorted_by(|a, b| a > b) && means[0] > 0.98, "{means:?}");
+}
+
 /// The centres of some pixels are those of a picture with three times as many.
 #[test]
 fn openness_belongs_to_a_surface_and_not_to_a_camera() {

@@ -236,6 +236,12 @@ fn judged(pictures: Vec<(Picture, Watching)>, total: u32, is_stopped: bool) -> V
     for (picture, watching) in &pictures {
         let verdict = watching.verdict(picture.samples, total, picture.noise, is_stopped);
         verdict.iter().for_each(tell);
+        if picture.crowded > 0 {
+            tell(
+                "note: around some places there are so many spheres that the smallest do not dim ambient light; --ao takes \
+                  random rays, which meet all of them",
+            );
+        }
     }
     pictures.into_iter().map(|(picture, _)| picture.image).collect()
 }

@@ -129,7 +129,7 @@ impl<'a> SampledPicture<'a> {
         let (samples, totals) = (sums.samples(), sums.totals());
         drop(sums);
         let image = finish(image, settings, layers);
-        Ok(Picture { image, samples, noise: totals.noise(samples), hits: Some(totals.opacity) })
+        Ok(Picture { image, samples, noise: totals.noise(samples), hits: Some(totals.opacity), crowded: 0 })
     }
 
     /// Fills the layers whose data comes from the ray through the centre of each pixel.

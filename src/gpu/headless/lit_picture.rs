@@ -43,7 +43,7 @@ impl Headless {
         };
         let image = self.finish(image, settings, layers).await?;
         let noise = totals.noise(samples);
-        Ok(Picture { image, samples, noise, hits: Some(totals.opacity) })
+        Ok(Picture { image, samples, noise, hits: Some(totals.opacity), crowded: 0 })
     }
 
     /// Completes a picture that was rendered with [`RenderSettings::unfinished`] and has the layers

@@ -229,7 +229,7 @@ impl Headless {
         if settings.integrator.is_primary() {
             let primary = scene.primary_settings(settings)?;
             let image = self.render_primary(scene, view, &primary, layers, watch).await?;
-            Ok(Picture { image, samples: 1, noise: None, hits: None })
+            Ok(Picture::by_primary_rays(image))
         } else if let Some(smooth) = scene.smooth(view, settings) {
             settings.check_with(scene.appearance())?;
             let (of_ids, primary) = (smooth.view_of_ids(), PrimarySettings::default());

@@ -58,11 +58,11 @@ impl Headless {
         }
         if plan.by_tiles {
             let image = self.render_by_tiles(request, plan, upload_watch, watch).await?;
-            return Ok(Picture { image, samples: 1, noise: None, hits: None });
+            return Ok(Picture::by_primary_rays(image));
         }
         if self.drops_bricks(plan, &view, settings) {
             let image = self.render_by_brick(request, plan, upload_watch, watch, None);
-            return Ok(Picture { image: image.await?, samples: 1, noise: None, hits: None });
+            return Ok(Picture::by_primary_rays(image.await?));
         }
         let options_of = |kind: BrickKind, several_bricks: bool| {
             let options = self.options_of(&[kind], several_bricks, view.camera);

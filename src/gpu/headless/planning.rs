@@ -19,7 +19,10 @@ impl RenderPlan {
         if request.settings.integrator.is_primary() {
             Self::planned(request, structures.accel, device, false)
         } else if let Some(smooth) = request.smooth() {
-            Self::planned(&request.of_ids(&smooth), structures.accel, device, false)
+            let of_tables = smooth.bytes().div_ceil(request.view.film.pixel_count());
+            let host_bytes_per_pixel = request.host_bytes_per_pixel.saturating_add(of_tables);
+            let of_ids = PictureRequest { host_bytes_per_pixel, ..request.of_ids(&smooth) };
+            Self::planned(&of_ids, structures.accel, device, false)
         } else {
             Self::of_lit(request, structures, device)
         }

@@ -26,16 +26,17 @@ impl Openness {
         let mut hidden = [0.0_f32; MOST_ABOVE];
         let (near, middle) = self.near_of(position);
         let position_in_cube = (position - middle).as_vec3();
+        let end = self.near_end;
         for [x, y, z, radius] in near {
             let v = Vec3::new(*x, *y, *z) - position_in_cube;
             // Most spheres of a list are too far away, or below the horizon.
             let over = n.dot(v) + radius;
-            if v.length_squared() >= (radius + 2.0 * side) * (radius + 2.0 * side) || over <= 0.01 * side {
+            if v.length_squared() >= (radius + end) * (radius + end) || over <= 0.01 * side {
                 continue;
             }
             let distance = v.length().max(*radius);
             // It counts less from one side of the cells on, as cells count more, and less where it is below the horizon.
-            let near = (2.0 - (distance - radius) / side).min(1.0);
+            let near = ((end - (distance - radius)) / side.min(end)).clamp(0.0, 1.0);
             let over = (4.0 * over / side - 0.04).min(1.0);
             // The sphere is seen in a cap of directions, of which this is the height; a cap that is smaller than the part
             // of a direction hides as much of it.

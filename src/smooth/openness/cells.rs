@@ -31,6 +31,12 @@ pub(super) struct Cells {
 
 impl Cells {
     pub(super) fn new(spheres: &[[f32; 4]]) -> Self {
+        let cells = Self::unfilled(spheres);
+        Self { filled: cells.fill(spheres), ..cells }
+    }
+
+    /// Cells whose sample points have not been counted.
+    pub(super) fn unfilled(spheres: &[[f32; 4]]) -> Self {
         let (low, high) = bounds(spheres);
         let wanted = if spheres.is_empty() { 1.0 } else { wanted_side(spheres) };
         let counts_of = |side: f64| ((high - low) / (2.0 * side)).ceil() * 2.0 + 2.0 * AROUND;
@@ -39,15 +45,8 @@ impl Cells {
             side *= 1.05;
         }
         let counts = counts_of(side).to_array().map(|count| count as usize);
-        let mut cells = Self {
-            origin: low - AROUND * side,
-            side,
-            counts,
-            has_near: side <= MOST_GROWN * wanted,
-            filled: Vec::new(),
-        };
-        cells.filled = cells.fill(spheres);
-        cells
+        let has_near = side <= MOST_GROWN * wanted;
+        Self { origin: low - AROUND * side, side, counts, has_near, filled: Vec::new() }
     }
 
     /// The position of a point, in cells.

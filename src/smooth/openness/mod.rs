@@ -33,6 +33,8 @@ const NONE: u32 = 0;
 pub(super) struct Openness {
     cells: Cells,
     rays: Rays,
+    /// The distance at which near spheres no longer count.
+    near_end: f32,
     levels: Levels,
     directions: [Vec3; DIRECTIONS],
     /// The number of each vertex's entry in `far`. Entry 0 is that of vertices that no visible point needs.
@@ -46,7 +48,7 @@ pub(super) struct Openness {
     /// Centres, counted from the middle of the cube, and radii of the spheres near the visible points of each cube.
     near: Vec<[f32; 4]>,
     /// The number of lists that lack spheres.
-    cut: usize,
+    pub(super) crowded: usize,
 }
 
 impl Openness {
@@ -54,9 +56,11 @@ impl Openness {
     pub(super) fn new(spheres: &[[f32; 4]], radius: f64) -> Self {
         let cells = Cells::new(spheres);
         let rays = Rays::new(&cells, radius);
+        let near_end = radius.min(2.0 * cells.side) as f32;
         let cubes = cells.cube_counts().into_iter().product();
         Self {
             rays,
+            near_end,
             levels: Levels::new(&cells, if cells.has_near { spheres } else { &[] }),
             directions: directions().map(|direction| direction.as_vec3()),
             vertices: vec![NONE; cubes],
@@ -64,9 +68,18 @@ impl Openness {
             cubes: vec![NONE; cubes],
             ends: vec![0],
             near: Vec::new(),
-            cut: 0,
+            crowded: 0,
             cells,
         }
+    }
+
+    /// The bytes of the tables for a picture with so many pixels, with 64 spheres in each list.
+    #[cfg(feature = "gpu")]
+    pub(super) fn bytes(spheres: &[[f32; 4]], pixels: u64) -> u64 {
+        let cells = Cells::unfilled(spheres);
+        let [all, cubes] =
+            [cells.counts, cells.cube_counts()].map(|counts| counts.into_iter().product::<usize>() as u64);
+        all + 16 * cubes + 4 * spheres.len() as u64 + cubes.min(2 * pixels) * (DIRECTIONS as u64 + 64 * 16)
     }
 
     /// Completes the tables for the points of some lists.
@@ -79,11 +92,11 @@ impl Openness {
         let new = number(&mut self.vertices, &vertices, self.far.len());
         self.far.extend(parallel::map(new.len(), |k| self.rays.from(&self.cells, self.cells.vertex(new[k]))));
         let new = number(&mut self.cubes, &cubes, self.ends.len());
-        let (near, ends, cut) = self.levels.lists(&self.cells, spheres, &new);
+        let (near, ends, crowded) = self.levels.lists(&self.cells, spheres, &new);
         let before = self.near.len() as u32;
         self.ends.extend(ends.into_iter().map(|end| before + end));
         self.near.extend(near);
-        self.cut += cut;
+        self.crowded += crowded;
     }
 
     /// The spheres that are near a visible point, and the middle of its cube.
