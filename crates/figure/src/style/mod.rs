@@ -95,7 +95,8 @@ const LEAST_RADIUS_OF_SMOOTH: f64 = 0.7;
 /// Chooses the values of a style for a scene and a view of it, except those that the scene file gives.
 pub(crate) fn fit(settings: &mut RenderSettings, style: Style, given: OwnValues, scene: &Scene, view: &View<'_>) {
     let subject = scene.subject();
-    let Some(radius) = subject.mean_radius() else { return };
+    let is_smooth = |settings: &RenderSettings| settings.is_smooth(scene, view.camera);
+    let Some(radius) = subject.mean_radius() else { return fit_smooth(settings, given, None, is_smooth) };
     if let Integrator::Studio(studio) = &mut settings.integrator {
         fit_occlusion(studio, given, &subject, radius);
         fit_outline(studio, style, given, &subject, radius, view);
@@ -104,7 +105,7 @@ pub(crate) fn fit(settings: &mut RenderSettings, style: Style, given: OwnValues,
         settings.ground = fit_ground(ground, &subject, view.camera);
     }
     let pixels = radius_in_pixels(view, subject.bounds().center(), radius);
-    fit_smooth(settings, given, pixels, |settings| settings.is_smooth(scene, view.camera));
+    fit_smooth(settings, given, pixels, is_smooth);
 }
 
 /// Nothing is random, and no noise is removed, if the picture allows it, unless a number of random rays is asked for or
