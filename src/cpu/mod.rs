@@ -75,12 +75,10 @@ pub fn render_watched<'a>(
             primary_watched(search, view, &primary, layers, watch)
         }
         None => {
-            settings.check(search.scene())?;
-            let scene = search.scene();
-            let frame = (scene.spheres(), scene.origin());
-            let Some(smooth) = SmoothPicture::new(frame, scene.checked_appearance(), view, settings) else {
+            let Some(smooth) = SmoothPicture::of(search.scene(), view, settings) else {
                 return SampledPicture::new(search, view, settings)?.render(layers, watch);
             };
+            settings.check(search.scene())?;
             let (of_ids, primary) = (smooth.view_of_ids(), PrimarySettings::default());
             let ids = primary_watched(search, &of_ids, &primary, smooth.layers(layers), &mut first_half(watch))?;
             smooth.draw(ids.image, layers, RenderError::Stopped, watch)

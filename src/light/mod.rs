@@ -83,6 +83,15 @@ impl LightKind {
             Self::Sphere { radiance, .. } => radiance,
         }
     }
+
+    /// Returns true if light arrives at each point from one direction that is the same everywhere or that of the eye.
+    pub(crate) fn is_sharp(&self) -> bool {
+        match self {
+            Self::Head { .. } => true,
+            Self::Directional { angular_radius, .. } => *angular_radius == 0.0,
+            Self::Point { .. } | Self::Sphere { .. } => false,
+        }
+    }
 }
 
 impl Light {

@@ -194,7 +194,7 @@ pub struct Occlusion {
     pub radius: Option<f64>,
     /// The number of directions per sample of a pixel: 1 to 1024.
     pub samples: u32,
-    /// Whether nothing is random, so that there is no noise, where spheres are opaque and have no gloss, and there are no
+    /// True for occlusion without chance, and so without noise, where spheres are opaque and have no gloss, and there are no
     /// ground, shadows, lens, lights with a width or denoising. Other pictures take random directions.
     #[serde(rename = "smooth")]
     pub is_smooth: bool,

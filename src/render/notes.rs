@@ -4,7 +4,7 @@ use std::f64::consts::PI;
 
 use super::{Integrator, RenderSettings, Studio};
 use crate::image::color::LinearRgb;
-use crate::light::{Light, LightKind, SkyLight};
+use crate::light::SkyLight;
 use crate::scene::Scene;
 use crate::scene::material::{Material, SurfaceProperties};
 
@@ -16,14 +16,9 @@ impl RenderSettings {
         let is_translucent = || !scene.checked_appearance().is_opaque();
         let needs_paths =
             || any(|surface| matches!(surface.material, Material::Conductor { .. } | Material::Dielectric { .. }));
-        let is_soft = |light: &Light| match light.kind {
-            LightKind::Head { .. } => false,
-            LightKind::Directional { angular_radius, .. } => angular_radius > 0.0,
-            LightKind::Point { .. } | LightKind::Sphere { .. } => true,
-        };
         let has_chance = |studio: &Studio| {
-            let others = self.sampling.denoise || self.ground.is_some() || self.lights.iter().any(is_soft);
-            studio.shadows || others || is_translucent()
+            let is_soft = self.lights.iter().any(|light| !light.kind.is_sharp());
+            studio.shadows || self.sampling.denoise || self.ground.is_some() || is_soft || is_translucent()
         };
         let is_asked = |studio: &&Studio| studio.occlusion.is_some_and(|occlusion| occlusion.is_smooth);
         let notes = [

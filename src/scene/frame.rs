@@ -80,7 +80,7 @@ pub(super) fn slackened(sphere: &[f32; 4]) -> [f64; 4] {
 }
 
 /// The bounding box, in world space, of spheres in a frame.
-pub(super) fn bounds_in_frame(origin: DVec3, spheres: &[[f32; 4]]) -> Option<Bounds> {
+pub(crate) fn bounds_in_frame(origin: DVec3, spheres: &[[f32; 4]]) -> Option<Bounds> {
     let of_sphere = |s: &[f32; 4]| {
         let [x, y, z, radius] = s.map(f64::from);
         Bounds::of_sphere(origin + DVec3::new(x, y, z), radius)

@@ -33,6 +33,7 @@ pub use color_map::{ColorMap, ColorMapError};
 pub(crate) use duplicates::Duplicates;
 pub use error::SceneError;
 pub use frame::SceneExtent;
+pub(crate) use frame::bounds_in_frame;
 pub use update::{Centers, NewColors, SceneUpdate, UpdateError};
 
 /// Spheres in the frame of the scene, which is an f64 origin with f32 offsets, and their appearance.

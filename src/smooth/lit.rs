@@ -17,7 +17,7 @@ pub(super) struct Lit<'a> {
     /// Directions towards lights, or none for lights at the eye, and what they make a white surface reflect that faces
     /// them.
     lights: Vec<(Option<DVec3>, DVec3)>,
-    /// What is seen where there is no sphere.
+    /// The colour where there is no sphere.
     pub(super) background: DVec3,
 }
 
@@ -49,11 +49,11 @@ impl<'a> Lit<'a> {
             Material::Emissive { strength } => albedo * f64::from(strength),
             _ => {
                 let ambient = wide(self.studio.ambient.to_array());
-                let hidden = if ambient == DVec3::ZERO { DVec3::ZERO } else { ambient * openness() };
+                let around = if ambient == DVec3::ZERO { DVec3::ZERO } else { ambient * openness() };
                 let lamp = |(toward, strength): &(Option<DVec3>, DVec3)| {
                     strength * spot.normal.dot(toward.unwrap_or(spot.out)).max(0.0)
                 };
-                albedo * (hidden + self.lights.iter().map(lamp).sum::<DVec3>())
+                albedo * (around + self.lights.iter().map(lamp).sum::<DVec3>())
             }
         };
         let Some(cue) = self.studio.depth_cue else { return color };

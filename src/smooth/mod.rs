@@ -5,13 +5,13 @@
 //! which are the same for all pixels; each may hit the spheres that the pixel and its neighbours show. Every sphere in a
 //! pixel is lit once, where it is hit on average. Ambient light is dimmed by [`Openness`].
 //!
-//! So a picture depends only on spheres, view, settings and ids, and is the same on all machines that find the same ids.
+//! So a picture depends only on spheres, view, settings and ids, and does not depend on
+//! the device that found them.
 
 use glam::DVec3;
 
 use crate::camera::{Camera, View};
 use crate::image::{Averages, Image, ImageTooLarge, Layer, LayerSet, outline};
-use crate::light::LightKind;
 use crate::parallel;
 use crate::render::{Decision, Picture, Progress, RenderSettings, Watch};
 use crate::scene::material::Material;
@@ -27,38 +27,32 @@ mod spots;
 /// The number of pixels that are drawn together, which bounds the memory for [`Spot`]s.
 const BAND: usize = 1 << 21;
 
-/// Whether a picture is smooth: occlusion is, no noise is to be removed, all spheres are opaque and matt, there is no
-/// ground, and light arrives from directions without width and without shadows.
+/// Returns what [`RenderSettings::is_smooth`] does, for spheres with this appearance.
 fn is_smooth(settings: &RenderSettings, appearance: &SceneAppearance, camera: &dyn Camera) -> bool {
     let Some(studio) = settings.studio_parameters() else { return false };
-    let is_sharp = |kind: &LightKind| match kind {
-        LightKind::Head { .. } => true,
-        LightKind::Directional { angular_radius, .. } => *angular_radius == 0.0,
-        LightKind::Point { .. } | LightKind::Sphere { .. } => false,
-    };
     let is_glossy = |material: &Material| matches!(material, Material::Lambert { specular, .. } if *specular != 0.0);
     studio.occlusion.is_some_and(|occlusion| occlusion.is_smooth)
         && !studio.shadows
         && !settings.sampling.denoise
         && settings.ground.is_none()
         && !camera.has_lens()
-        && settings.lights.iter().all(|light| is_sharp(&light.kind))
+        && settings.lights.iter().all(|light| light.kind.is_sharp())
         && appearance.is_opaque()
         && !appearance.surfaces().iter().any(|surface| is_glossy(&surface.material))
 }
 
 impl RenderSettings {
-    /// Returns true if nothing is random in the picture: [`Occlusion::is_smooth`](crate::render::Occlusion::is_smooth) is true, no noise is to be removed, all
-    /// spheres are opaque and have no gloss, there is no ground and no lens, and lights are at the eye or infinitely far away,
-    /// without width and without shadows. Such a picture follows from the spheres that rays through the centres of pixels
-    /// hit.
+    /// Returns true if nothing is random in the picture: [`smooth`](crate::render::Occlusion::is_smooth) occlusion is asked
+    /// for, no noise is to be removed, all spheres are opaque and have no gloss, there is no ground and no lens, and lights
+    /// are at the eye or infinitely far away, without width and without shadows. Such a picture follows from the spheres
+    /// that rays through the centres of pixels hit.
     #[must_use]
     pub fn is_smooth(&self, scene: &Scene, camera: &dyn Camera) -> bool {
         is_smooth(self, scene.checked_appearance(), camera)
     }
 }
 
-/// What a smooth picture shows.
+/// A smooth picture, before it is drawn.
 #[derive(Clone, Copy)]
 pub(crate) struct SmoothPicture<'a> {
     spheres: &'a [[f32; 4]],
@@ -79,6 +73,11 @@ impl<'a> SmoothPicture<'a> {
     ) -> Option<Self> {
         let picture = Self { spheres, appearance, origin, view: *view, settings };
         is_smooth(settings, appearance, view.camera).then_some(picture)
+    }
+
+    /// The picture of a scene; `None` if it is not smooth.
+    pub(crate) fn of(scene: &'a Scene, view: &View<'a>, settings: &'a RenderSettings) -> Option<Self> {
+        Self::new((scene.spheres(), scene.origin()), scene.checked_appearance(), view, settings)
     }
 
     /// The view of the ids from which the picture follows: for a part of a film, with the pixels around it.
@@ -143,7 +142,7 @@ impl<'a> SmoothPicture<'a> {
         parallel::map(pixels.len(), |at| self.averages(&lit, &openness, &spots[at].all))
     }
 
-    /// What finds spots, what lights them, and the tables of openness, without any visible points.
+    /// The tools of drawing: they find spots, light them, and have the tables of openness, without any visible points.
     fn tools(&self) -> Option<(Finder<'a>, Lit<'a>, Openness)> {
         let radius = self.settings.studio_parameters()?.occlusion?.radius.unwrap_or(f64::INFINITY);
         let finder = Finder::new(self.spheres, self.origin, &self.view, &self.settings.sampling);

@@ -114,15 +114,10 @@ impl<'a> Finder<'a> {
         Some(Ray { origin: ray.origin - self.origin, ..ray })
     }
 
-    fn sphere(&self, id: u32) -> (DVec3, f64) {
-        let [x, y, z, radius] = self.spheres[id as usize].map(f64::from);
-        (DVec3::new(x, y, z), radius)
-    }
-
     /// The spot that the ray through a pixel's centre hits.
     fn at_center(&self, pixel: [u32; 2], id: u32) -> Option<Spot> {
         let ray = self.ray(pixel, DVec2::ZERO).filter(|_| id != NO_ID)?;
-        let (center, radius) = self.sphere(id);
+        let (center, radius) = sphere(self.spheres, id);
         // A ray that a device finds to hit may miss by rounding.
         let foot = (center - ray.origin).dot(ray.direction);
         let distance = distance(&ray, center, radius).unwrap_or(foot);
@@ -134,10 +129,11 @@ impl<'a> Finder<'a> {
     fn at_edge(&self, pixel: [u32; 2], shown: &[u32], spots: &mut Vec<Spot>) {
         let mut hits =
             [Hits { id: NO_ID, count: 0, position: DVec3::ZERO, direction: DVec3::ZERO, distance: 0.0 }; MOST];
-        let spheres = shown.iter().map(|id| (*id != NO_ID).then(|| self.sphere(*id)));
         let mut places = [None; MOST];
-        places.iter_mut().zip(spheres).for_each(|(place, sphere)| *place = sphere);
-        let (mut missing, mut all) = (0, 0);
+        for (place, id) in places.iter_mut().zip(shown) {
+            *place = (*id != NO_ID).then(|| sphere(self.spheres, *id));
+        }
+        let mut missing = 0;
         for offset in &self.offsets {
             let ray = self.ray(pixel, *offset);
             let mut nearest: Option<(f64, usize)> = None;
@@ -162,8 +158,8 @@ impl<'a> Finder<'a> {
                 _ if shown.contains(&NO_ID) => missing += 1,
                 _ => {}
             }
-            all = missing + hits.iter().map(|hits| hits.count).sum::<u32>();
         }
+        let all = missing + hits.iter().map(|hits| hits.count).sum::<u32>();
         if all == 0 {
             spots.extend(self.at_center(pixel, shown[0]));
         }
@@ -175,7 +171,7 @@ impl<'a> Finder<'a> {
     /// The spot in the middle of hits on one sphere, of `all` hits.
     fn spot(&self, hits: &Hits, all: u32) -> Spot {
         let Hits { id, count, position, direction, distance } = *hits;
-        let (center, radius) = self.sphere(id);
+        let (center, radius) = sphere(self.spheres, id);
         let mean = position / f64::from(count);
         let out = -direction.normalize_or(DVec3::Z);
         let outward = (mean - center).normalize_or(out);
@@ -190,6 +186,12 @@ impl<'a> Finder<'a> {
             share: count as f32 / all as f32,
         }
     }
+}
+
+/// Centre and radius of a sphere.
+pub(super) fn sphere(spheres: &[[f32; 4]], id: u32) -> (DVec3, f64) {
+    let [x, y, z, radius] = spheres[id as usize].map(f64::from);
+    (DVec3::new(x, y, z), radius)
 }
 
 /// The number of rays in a pixel at an edge. More than 256 change nothing that is seen.

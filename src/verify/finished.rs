@@ -206,10 +206,7 @@ impl Checker<'_> {
             Some(inputs) => {
                 let mut check = LitCheck::new(self, &inputs);
                 check.brightest = check.most_light_of_paths();
-                let scene = self.scene;
-                let frame = (scene.spheres(), scene.origin());
-                let smooth = SmoothPicture::new(frame, scene.checked_appearance(), view, settings);
-                check.finished_light(indices, smooth.as_ref())
+                check.finished_light(indices, SmoothPicture::of(self.scene, view, settings).as_ref())
             }
             None => vec![None; indices.len()],
         }

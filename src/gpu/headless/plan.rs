@@ -84,9 +84,7 @@ impl<'a> PictureRequest<'a> {
 impl<'a> PictureRequest<'a> {
     /// The picture, if it is smooth.
     pub(crate) fn smooth(&self) -> Option<SmoothPicture<'a>> {
-        let scene = self.scene;
-        let frame = (scene.spheres(), scene.origin());
-        SmoothPicture::new(frame, scene.checked_appearance(), &self.view, self.settings)
+        SmoothPicture::of(self.scene, &self.view, self.settings)
     }
 
     /// The picture of ids from which a smooth picture follows.

@@ -1,4 +1,4 @@
-//! The openness of a point, in f32, direction by direction side by side. `src/verify` computes it in f64.
+//! The openness of a point, in f32, direction by direction side by side. `tests/cpu/smooth.rs` compares it with rays.
 
 use glam::{DVec3, Vec3};
 

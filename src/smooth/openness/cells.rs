@@ -5,6 +5,7 @@ use std::sync::atomic::{AtomicBool, Ordering};
 use glam::{DVec3, IVec3};
 
 use crate::parallel;
+use crate::scene::bounds_in_frame;
 
 /// The most cells. They take a byte each.
 const MOST: f64 = 32e6;
@@ -23,7 +24,7 @@ pub(super) struct Cells {
     pub(super) side: f64,
     /// The number of cells along each axis, which is even.
     pub(super) counts: [usize; 3],
-    /// Whether near spheres count one by one.
+    /// True if near spheres count one by one, which they do unless cells are much larger than spheres.
     pub(super) has_near: bool,
     /// For each cell the number of its sample points, of eight, that are inside spheres.
     pub(super) filled: Vec<u8>,
@@ -37,9 +38,10 @@ impl Cells {
 
     /// Cells whose sample points have not been counted.
     pub(super) fn unfilled(spheres: &[[f32; 4]]) -> Self {
-        let (low, high) = bounds(spheres);
-        let wanted = if spheres.is_empty() { 1.0 } else { wanted_side(spheres) };
-        let counts_of = |side: f64| ((high - low) / (2.0 * side)).ceil() * 2.0 + 2.0 * AROUND;
+        let bounds = bounds_in_frame(DVec3::ZERO, spheres);
+        let wanted = if bounds.is_some() { wanted_side(spheres) } else { 1.0 };
+        let [low, size] = bounds.map_or([DVec3::ZERO; 2], |bounds| [bounds.min(), bounds.size()]);
+        let counts_of = |side: f64| (size / (2.0 * side)).ceil() * 2.0 + 2.0 * AROUND;
         let mut side = wanted;
         while counts_of(side).element_product() > MOST {
             side *= 1.05;
@@ -104,7 +106,7 @@ impl Cells {
     }
 
     /// The distance from a surface at which light of far spheres is looked up.
-    pub(super) fn lift(&self) -> f64 {
+    fn lift(&self) -> f64 {
         self.side * if self.has_near { 0.8 } else { 0.4 }
     }
 
@@ -115,14 +117,7 @@ impl Cells {
         };
         let (first, parts) = self.tetrahedron(position, normal);
         corners(first, parts).into_iter().for_each(|(vertex, _)| mark(vertices, vertex));
-        // A kernel rounds, and may find the point in the next cube.
-        let place = self.in_cells(position) / 2.0;
-        let [low, high] = [-1e-3, 1e-3].map(|margin| self.within(place + margin, 1));
-        for z in low.z..=high.z {
-            for y in low.y..=high.y {
-                (low.x..=high.x).for_each(|x| mark(cubes, IVec3::new(x, y, z)));
-            }
-        }
+        mark(cubes, self.cube(position));
     }
 
     /// The whole part of a place among cubes or vertices, of which there are `more` beyond it along each axis.
@@ -141,9 +136,13 @@ impl Cells {
         (first, (place - first.as_dvec3()).clamp(DVec3::ZERO, DVec3::ONE))
     }
 
-    /// The number of a cube.
+    fn cube(&self, position: DVec3) -> IVec3 {
+        self.within(self.in_cells(position) / 2.0, 1)
+    }
+
+    /// The number of the cube of a point.
     pub(super) fn cube_of(&self, position: DVec3) -> u32 {
-        index(self.cube_counts(), self.within(self.in_cells(position) / 2.0, 1))
+        index(self.cube_counts(), self.cube(position))
     }
 
     /// The cell of a vertex.
@@ -183,21 +182,6 @@ pub(super) fn corners(first: IVec3, parts: DVec3) -> [(IVec3, f64); 4] {
     let [a, b, c] = [longest, 3 - longest - shortest, shortest].map(|axis| parts[axis]);
     let last = first + IVec3::ONE;
     [(first, 1.0 - a), (first + IVec3::AXES[longest], a - b), (last - IVec3::AXES[shortest], b - c), (last, c)]
-}
-
-/// The corners of the box around all spheres.
-fn bounds(spheres: &[[f32; 4]]) -> (DVec3, DVec3) {
-    let parts = parallel::map_chunks(spheres, |_, spheres| {
-        spheres.iter().fold((DVec3::INFINITY, DVec3::NEG_INFINITY), |(low, high), sphere| {
-            let [x, y, z, radius] = sphere.map(f64::from);
-            let center = DVec3::new(x, y, z);
-            (low.min(center - radius), high.max(center + radius))
-        })
-    });
-    if spheres.is_empty() {
-        return (DVec3::ZERO, DVec3::ZERO);
-    }
-    parts.into_iter().fold((DVec3::INFINITY, DVec3::NEG_INFINITY), |all, part| (all.0.min(part.0), all.1.max(part.1)))
 }
 
 /// The side that cells should have: the mean radius, weighted by surface, but at most 1.5 times the radius below which

@@ -5,8 +5,8 @@
 //! points around a *vertex*, the centre of every second cell along each axis, so that it is computed once for each vertex
 //! that a visible point needs. A near sphere fades out over the distances at which its cells fade in.
 //!
-//! The tables are integers that depend on the spheres alone, and the openness of a point on the tables, so that it is the
-//! same for every camera.
+//! The tables depend on the spheres and on how far these occlude, and the openness of a point on the tables, so that it is
+//! the same for every camera.
 
 use std::sync::atomic::{AtomicBool, Ordering};
 
@@ -15,7 +15,7 @@ use glam::{DVec3, IVec3, Vec3};
 use super::spots::Spot;
 use crate::parallel;
 use cells::{Cells, index};
-use far::Rays;
+use far::{DIRECTIONS, Rays, directions};
 use near::Levels;
 
 mod at;
@@ -23,9 +23,7 @@ mod cells;
 mod far;
 mod near;
 
-use far::{DIRECTIONS, directions};
-
-/// The part of a vertex or a list in which no visible point lies.
+/// The number of a vertex or a cube that no visible point needs.
 const NONE: u32 = 0;
 
 /// The tables from which the openness of points is computed.
@@ -108,7 +106,7 @@ impl Openness {
     }
 
     /// The shares of light, of 255, that pass along each direction from a vertex.
-    pub(super) fn far_of(&self, vertex: IVec3) -> &[u8; DIRECTIONS] {
+    fn far_of(&self, vertex: IVec3) -> &[u8; DIRECTIONS] {
         &self.far[self.vertices[index(self.cells.cube_counts(), vertex) as usize] as usize]
     }
 }

@@ -1,9 +1,12 @@
 //! Lists of the spheres near visible points.
 
+use std::collections::BTreeSet;
+
 use glam::DVec3;
 
 use super::cells::{Cells, floor};
 use crate::parallel;
+use crate::smooth::spots::sphere;
 
 /// The most spheres of a list. The smallest and farthest of more are left out.
 const MOST: usize = 256;
@@ -40,17 +43,8 @@ impl Levels {
             radius if radius <= LARGEST => Some(0),
             radius => Some((radius / LARGEST).log2().ceil() as u32),
         };
-        let levels = parallel::map_chunks(spheres, |_, spheres| {
-            let levels = spheres.iter().filter_map(level_of);
-            levels.fold(Vec::new(), |mut seen, level| {
-                seen.resize(seen.len().max(level as usize + 1), false);
-                seen[level as usize] = true;
-                seen
-            })
-        });
-        let count = levels.iter().map(Vec::len).max().unwrap_or(0);
-        let is_used = |level: &u32| levels.iter().any(|seen| seen.get(*level as usize) == Some(&true));
-        let levels = (0..count as u32).filter(is_used).map(|number| {
+        let levels = parallel::map_chunks(spheres, |_, part| part.iter().filter_map(level_of).collect::<BTreeSet<_>>());
+        let levels = levels.into_iter().flatten().collect::<BTreeSet<_>>().into_iter().map(|number| {
             let grown = 2.0_f64.powi(number as i32);
             let counts = cells.cube_counts().map(|count| (count as f64 / grown).ceil() as usize);
             let mut level = Level { side: 2.0 * cells.side * grown, counts, starts: Vec::new(), ids: Vec::new() };
@@ -137,9 +131,4 @@ impl Level {
         let place = ((point - cells.origin) / self.side).to_array();
         [0, 1, 2].map(|axis| (floor(place[axis]).max(0) as usize).min(self.counts[axis] - 1))
     }
-}
-
-fn sphere(spheres: &[[f32; 4]], id: u32) -> (DVec3, f64) {
-    let [x, y, z, radius] = spheres[id as usize].map(f64::from);
-    (DVec3::new(x, y, z), radius)
 }

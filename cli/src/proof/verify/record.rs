@@ -47,7 +47,7 @@ pub(crate) fn recorded(path: &Path, args: &VerifyArgs) -> Result<VerifyJob, Fail
     }
     let is_lit = !input.settings.integrator.is_primary();
     for (flag, is_given) in [("--paths", args.paths.is_some()), ("--tile-seed", args.tile_seed.is_some())] {
-        if is_given && !has_random_light(&input) {
+        if is_given && !certified::has_random_light(&input) {
             return Err(Failure::usage(format!(
                 "{flag} needs light that is sampled at random, and this picture has none; remove {flag}"
             )));
@@ -160,11 +160,6 @@ fn certify_light(
     Ok(certificate)
 }
 
-/// Whether light of the picture is sampled at random.
-fn has_random_light(input: &Input) -> bool {
-    !input.settings.integrator.is_primary() && !input.settings.is_smooth(&input.scene, input.view().camera)
-}
-
 /// A number that differs in each run.
 fn any_seed() -> u32 {
     use std::hash::{BuildHasher, RandomState};
@@ -202,7 +197,8 @@ fn judged_light(
     chosen: (u32, Option<u32>),
     choice: AccelChoice,
 ) -> Result<JudgedLight, Failure> {
-    let stages = has_random_light(&input).then(|| certify_light(&headless, &input, chosen, choice)).transpose()?;
+    let stages =
+        certified::has_random_light(&input).then(|| certify_light(&headless, &input, chosen, choice)).transpose()?;
     let wanted = input.settings.sampling.samples;
     let samples = wanted.min(PICTURE_SAMPLES);
     input.settings.sampling.samples = samples;

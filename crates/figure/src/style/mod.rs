@@ -117,21 +117,20 @@ fn fit_smooth(
     is_smooth: impl Fn(&RenderSettings) -> bool,
 ) {
     let is_wanted = settings.studio_parameters().and_then(|studio| studio.occlusion).is_some_and(|o| o.is_smooth);
+    if !is_wanted {
+        return;
+    }
     let are_seen = radius_in_pixels.is_none_or(|radius| radius >= LEAST_RADIUS_OF_SMOOTH);
-    if !is_wanted || !given.smooth && (given.occlusion_samples || !are_seen) {
-        return set_smooth(settings, given.smooth && is_wanted);
-    }
-    let noisy = settings.sampling.denoise;
+    let is_refused = !given.smooth && (given.occlusion_samples || !are_seen);
+    let denoise = settings.sampling.denoise;
     settings.sampling.denoise &= given.denoise;
-    if !is_smooth(settings) {
-        settings.sampling.denoise = noisy;
-        set_smooth(settings, given.smooth);
+    if !is_refused && is_smooth(settings) {
+        return;
     }
-}
-
-fn set_smooth(settings: &mut RenderSettings, is_smooth: bool) {
+    settings.sampling.denoise = denoise;
     if let Integrator::Studio(Studio { occlusion: Some(occlusion), .. }) = &mut settings.integrator {
-        occlusion.is_smooth = is_smooth;
+        // What the file asks for stays, so that a note can say why it is not so.
+        occlusion.is_smooth = given.smooth;
     }
 }
 

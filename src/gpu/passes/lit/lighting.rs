@@ -141,11 +141,7 @@ impl LightingData {
 /// Whether lights have no size, no place and no shadows, and all surfaces are matt.
 fn is_sharp(settings: &RenderSettings, scene: &SceneSummary, lights: &[LightKind]) -> bool {
     let shadows = settings.studio_parameters().is_some_and(|studio| studio.shadows);
-    let is_sharp = |light: &LightKind| match light {
-        LightKind::Head { .. } => true,
-        LightKind::Directional { angular_radius, .. } => *angular_radius == 0.0 && !shadows,
-        LightKind::Point { .. } | LightKind::Sphere { .. } => false,
-    };
+    let is_sharp = |light: &LightKind| matches!(light, LightKind::Head { .. }) || light.is_sharp() && !shadows;
     lights.iter().all(is_sharp) && scene.appearance.surfaces().iter().all(is_matt)
 }
 
