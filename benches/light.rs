@@ -78,8 +78,8 @@ fn measure(headless: &Headless, standard: Standard) {
     let view = View::new(&camera, film);
     let subject = Subject { headless, scene: buffers, view };
     const RAYS: u32 = 4;
-    let near = Occlusion { radius: Some(0.02), samples: RAYS, ..Occlusion::default() };
-    let far = Occlusion { radius: None, samples: RAYS, ..Occlusion::default() };
+    let near = Occlusion { radius: Some(0.02), samples: RAYS };
+    let far = Occlusion { radius: None, samples: RAYS };
     let lights = Light::key_and_fill().to_vec();
     let pictures = [
         ("no light", studio(2, None, Vec::new())),
@@ -88,10 +88,7 @@ fn measure(headless: &Headless, standard: Standard) {
         ("two shadows", studio(2, None, lights.clone())),
         ("path, 1 bounce", path(2, 1)),
         ("path, 3 bounces", path(2, 3)),
-        (
-            "studio: two shadows, 16 ambient rays",
-            studio(1, Some(Occlusion { radius: None, samples: 16, ..Occlusion::default() }), lights),
-        ),
+        ("studio: two shadows, 16 ambient rays", studio(1, Some(Occlusion { radius: None, samples: 16 }), lights)),
     ];
     let mut best = vec![f64::INFINITY; pictures.len()];
     let mut hits = vec![0.0; pictures.len()];

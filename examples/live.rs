@@ -99,7 +99,7 @@ fn settings() -> RenderSettings {
     settings.background = LinearRgb::from_srgb8([243, 244, 246]);
     settings.sampling.samples = 64;
     settings.integrator = Integrator::Studio(Studio {
-        occlusion: Some(Occlusion { radius: Some(12.0), samples: 2, ..Occlusion::default() }),
+        occlusion: Some(Occlusion { radius: Some(12.0), samples: 2 }),
         ..Studio::default()
     });
     settings

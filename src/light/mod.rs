@@ -1,6 +1,7 @@
 //! Lights, sky and ground, which illuminate a scene. Also two tables that all renderers share: the sampling
 //! probabilities of emissive spheres, and the energy that rough surfaces keep.
 
+use std::f64::consts::PI;
 use std::sync::Arc;
 
 use glam::DVec3;
@@ -16,6 +17,9 @@ pub(crate) mod energy;
 pub mod environment;
 
 pub use emitters::Emitters;
+
+/// The largest angular radius of a narrow light, in radians: 15°.
+const MOST_NARROW: f64 = PI / 12.0;
 
 /// A light, placed in the world or relative to the camera.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -84,11 +88,12 @@ impl LightKind {
         }
     }
 
-    /// Returns true if light arrives at each point from one direction that is the same everywhere or that of the eye.
-    pub(crate) fn is_sharp(&self) -> bool {
+    /// Returns true if light arrives at each point from directions that are the same everywhere and within 15°, or from
+    /// the eye.
+    pub(crate) fn is_narrow(&self) -> bool {
         match self {
             Self::Head { .. } => true,
-            Self::Directional { angular_radius, .. } => *angular_radius == 0.0,
+            Self::Directional { angular_radius, .. } => *angular_radius <= MOST_NARROW,
             Self::Point { .. } | Self::Sphere { .. } => false,
         }
     }

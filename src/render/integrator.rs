@@ -149,6 +149,11 @@ pub struct Studio {
     pub occlusion: Option<Occlusion>,
     /// Whether lights cast shadows. Spheres that are not opaque cast no shadows.
     pub shadows: bool,
+    /// True for a picture without chance, and so without noise, where spheres are opaque and have no gloss, there are no
+    /// ground, lens or denoising, and lights are at the eye or infinitely far away and not wider than 15°. Other pictures
+    /// take random rays.
+    #[serde(rename = "smooth")]
+    pub is_smooth: bool,
     /// The largest number of translucent surfaces that are visible behind each other: 1 to 64.
     pub max_surfaces: u32,
     /// Fading of colours with distance.
@@ -164,6 +169,7 @@ impl Default for Studio {
             ambient: LinearRgb::gray(0.25),
             occlusion: None,
             shadows: true,
+            is_smooth: false,
             max_surfaces: 16,
             depth_cue: None,
             outline: None,
@@ -194,16 +200,12 @@ pub struct Occlusion {
     pub radius: Option<f64>,
     /// The number of directions per sample of a pixel: 1 to 1024.
     pub samples: u32,
-    /// True for occlusion without chance, and so without noise, where spheres are opaque and have no gloss, and there are no
-    /// ground, shadows, lens, lights with a width or denoising. Other pictures take random directions.
-    #[serde(rename = "smooth")]
-    pub is_smooth: bool,
 }
 
 impl Default for Occlusion {
     /// Four random directions, and occlusion at any distance.
     fn default() -> Self {
-        Self { radius: None, samples: 4, is_smooth: false }
+        Self { radius: None, samples: 4 }
     }
 }
 

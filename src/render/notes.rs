@@ -17,15 +17,14 @@ impl RenderSettings {
         let needs_paths =
             || any(|surface| matches!(surface.material, Material::Conductor { .. } | Material::Dielectric { .. }));
         let has_chance = |studio: &Studio| {
-            let is_soft = self.lights.iter().any(|light| !light.kind.is_sharp());
-            studio.shadows || self.sampling.denoise || self.ground.is_some() || is_soft || is_translucent()
+            let is_wide = self.lights.iter().any(|light| !light.kind.is_narrow());
+            studio.is_smooth && (self.sampling.denoise || self.ground.is_some() || is_wide || is_translucent())
         };
-        let is_asked = |studio: &&Studio| studio.occlusion.is_some_and(|occlusion| occlusion.is_smooth);
         let notes = [
             (
-                self.studio_parameters().filter(is_asked).is_some_and(has_chance),
-                "ambient occlusion is not smooth but sampled at random, because shadows, a ground, lights with a width or \
-                 place, denoising or opacity are asked for; leave these out, or `smooth` in `[studio.occlusion]`",
+                self.studio_parameters().is_some_and(has_chance),
+                "the studio is not smooth but sampled at random, because a ground, lights with a place or wider than 15 \
+                 degrees, denoising or opacity are asked for; leave these out, or `smooth` in `[studio]`",
             ),
             (
                 self.is_dark(scene),

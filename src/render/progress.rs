@@ -50,7 +50,8 @@ pub struct Picture {
     /// primary rays, whose hits are not counted.
     pub hits: Option<f64>,
     /// Number of places in a smooth picture near which there are more than 256 spheres, so that those which look smallest
-    /// do not dim ambient light.
+    /// do not dim ambient light, and of those from which more than 512 are in the way to a lamp, so that the farthest of
+    /// them cast no shadow there.
     pub crowded: usize,
 }
 

@@ -1,8 +1,14 @@
 //! The light that a spot reflects.
 
+use std::sync::atomic::Ordering;
+
 use glam::DVec3;
 
-use super::spots::Spot;
+use super::lamps::Lamp;
+use super::lists::Needed;
+use super::openness::Openness;
+use super::places::Places;
+use super::spots::{Row, Spot};
 use crate::camera::Camera;
 use crate::geometry::math::wide;
 use crate::light::LightKind;
@@ -10,13 +16,14 @@ use crate::render::{RenderSettings, Studio};
 use crate::scene::SceneAppearance;
 use crate::scene::material::Material;
 
-/// The light of a studio whose lights have no width and no shadows.
+/// The light of a studio whose lights are at the eye or infinitely far away.
 pub(super) struct Lit<'a> {
     appearance: &'a SceneAppearance,
     studio: &'a Studio,
-    /// Directions towards lights, or none for lights at the eye, and what they make a white surface reflect that faces
-    /// them.
-    lights: Vec<(Option<DVec3>, DVec3)>,
+    /// Lamps, or none for lights at the eye, and what they make a white surface reflect that faces them.
+    lamps: Vec<(Option<Lamp>, DVec3)>,
+    openness: Option<Openness<'a>>,
+    places: &'a Places<'a>,
     /// The colour where there is no sphere.
     pub(super) background: DVec3,
 }
@@ -26,34 +33,64 @@ impl<'a> Lit<'a> {
         appearance: &'a SceneAppearance,
         camera: &dyn Camera,
         settings: &'a RenderSettings,
+        places: &'a Places<'a>,
     ) -> Option<Self> {
+        let studio = settings.studio_parameters()?;
         let vectors = camera.vectors();
-        let lights = settings.lights.iter().filter_map(|light| match light.in_view(&vectors)? {
+        let lamps = settings.lights.iter().filter_map(|light| match light.in_view(&vectors)? {
             LightKind::Head { strength } => Some((None, wide(strength.to_array()))),
-            LightKind::Directional { toward, strength, .. } => Some((Some(toward), wide(strength.to_array()))),
+            LightKind::Directional { toward, strength, angular_radius } => {
+                Some((Some(Lamp::new(toward, angular_radius, places)), wide(strength.to_array())))
+            }
             LightKind::Point { .. } | LightKind::Sphere { .. } => None,
         });
+        let lamps = lamps.collect();
+        let radius = |occlusion: &crate::render::Occlusion| occlusion.radius.unwrap_or(f64::INFINITY);
+        let openness = studio.occlusion.as_ref().map(|occlusion| Openness::new(places, radius(occlusion)));
         let background = if settings.is_transparent { DVec3::ZERO } else { wide(settings.background.to_array()) };
-        let studio = settings.studio_parameters()?;
-        Some(Self { appearance, studio, lights: lights.collect(), background })
+        Some(Self { appearance, studio, lamps, openness, places, background })
+    }
+
+    /// Prepares for the light of some spots.
+    pub(super) fn see(&mut self, rows: &[Row]) {
+        let cubes = Needed::cubes(self.places, rows);
+        if let Some(openness) = &mut self.openness {
+            openness.see(rows, &cubes);
+        }
+        if self.studio.shadows {
+            self.lamps.iter_mut().flat_map(|(lamp, _)| lamp).for_each(|lamp| lamp.see(self.places, &cubes));
+        }
+    }
+
+    /// The number of places around which spheres were left out, so that these dim no light there.
+    pub(super) fn crowded(&self) -> usize {
+        let of_lamps = self.lamps.iter().flat_map(|(lamp, _)| lamp).map(|lamp| &lamp.crowded);
+        let all = of_lamps.chain(self.openness.as_ref().map(|openness| &openness.crowded));
+        all.map(|count| count.load(Ordering::Relaxed)).sum()
     }
 
     pub(super) fn albedo(&self, id: u32) -> DVec3 {
         wide(self.appearance.color_of(id).to_array())
     }
 
-    /// The light that leaves a spot towards the camera. `openness` is asked for if ambient light counts.
-    pub(super) fn color(&self, spot: &Spot, openness: impl FnOnce() -> f64) -> DVec3 {
+    /// The light that leaves a spot towards the camera.
+    pub(super) fn color(&self, spot: &Spot) -> DVec3 {
         let albedo = self.albedo(spot.id);
         let color = match self.appearance.surface_of(spot.id).material {
             Material::Emissive { strength } => albedo * f64::from(strength),
             _ => {
-                let ambient = wide(self.studio.ambient.to_array());
-                let around = if ambient == DVec3::ZERO { DVec3::ZERO } else { ambient * openness() };
-                let lamp = |(toward, strength): &(Option<DVec3>, DVec3)| {
-                    strength * spot.normal.dot(toward.unwrap_or(spot.out)).max(0.0)
-                };
-                albedo * (around + self.lights.iter().map(lamp).sum::<DVec3>())
+                let mut light = wide(self.studio.ambient.to_array());
+                if let (Some(openness), true) = (&self.openness, light != DVec3::ZERO) {
+                    light *= f64::from(openness.at(spot.position, spot.normal));
+                }
+                for (lamp, strength) in &self.lamps {
+                    light += strength
+                        * match lamp {
+                            Some(lamp) => lamp.light(spot, self.studio.shadows.then_some(self.places)),
+                            None => spot.normal.dot(spot.out).max(0.0),
+                        };
+                }
+                albedo * light
             }
         };
         let Some(cue) = self.studio.depth_cue else { return color };

@@ -12,16 +12,23 @@ use glam::DVec3;
 
 use crate::camera::{Camera, View};
 use crate::image::{Averages, Image, ImageTooLarge, Layer, LayerSet, outline};
+#[cfg(feature = "gpu")]
+use crate::light::{Light, LightKind};
 use crate::parallel;
 use crate::render::{Decision, Picture, Progress, RenderSettings, Watch};
 use crate::scene::material::Material;
 use crate::scene::{Scene, SceneAppearance};
 use lit::Lit;
-use openness::Openness;
+use places::Places;
 use spots::{Finder, Row, Spot, rays, with_neighbors};
 
+mod cells;
+mod lamps;
+mod levels;
+mod lists;
 mod lit;
 mod openness;
+mod places;
 mod spots;
 
 /// The number of pixels that are drawn together, which bounds the memory for [`Spot`]s.
@@ -31,21 +38,20 @@ const BAND: usize = 1 << 21;
 fn is_smooth(settings: &RenderSettings, appearance: &SceneAppearance, camera: &dyn Camera) -> bool {
     let Some(studio) = settings.studio_parameters() else { return false };
     let is_glossy = |material: &Material| matches!(material, Material::Lambert { specular, .. } if *specular != 0.0);
-    studio.occlusion.is_some_and(|occlusion| occlusion.is_smooth)
-        && !studio.shadows
+    studio.is_smooth
         && !settings.sampling.denoise
         && settings.ground.is_none()
         && !camera.has_lens()
-        && settings.lights.iter().all(|light| light.kind.is_sharp())
+        && settings.lights.iter().all(|light| light.kind.is_narrow())
         && appearance.is_opaque()
         && !appearance.surfaces().iter().any(|surface| is_glossy(&surface.material))
 }
 
 impl RenderSettings {
-    /// Returns true if nothing is random in the picture: [`smooth`](crate::render::Occlusion::is_smooth) occlusion is asked
-    /// for, no noise is to be removed, all spheres are opaque and have no gloss, there is no ground and no lens, and lights
-    /// are at the eye or infinitely far away, without width and without shadows. Such a picture follows from the spheres
-    /// that rays through the centres of pixels hit.
+    /// Returns true if nothing is random in the picture: a [smooth](crate::render::Studio::is_smooth) studio is asked for, no
+    /// noise is to be removed, all spheres are opaque and have no gloss, there is no ground and no lens, and lights are at
+    /// the eye or infinitely far away and not wider than 15°. Such a picture follows from the spheres that rays through the
+    /// centres of pixels hit.
     #[must_use]
     pub fn is_smooth(&self, scene: &Scene, camera: &dyn Camera) -> bool {
         is_smooth(self, scene.checked_appearance(), camera)
@@ -90,7 +96,14 @@ impl<'a> SmoothPicture<'a> {
     pub(crate) fn bytes(&self) -> u64 {
         let pixels = self.view.film.pixel_count();
         let spots = pixels.min(BAND as u64) * 2 * size_of::<Spot>() as u64;
-        spots + Openness::bytes(self.spheres, pixels)
+        let cells = cells::Cells::new(self.spheres);
+        let casts_shadow = |light: &&Light| matches!(light.kind, LightKind::Directional { .. });
+        let has_shadows = self.settings.studio_parameters().is_some_and(|studio| studio.shadows);
+        let lamps = self.settings.lights.iter().filter(casts_shadow).count() * usize::from(has_shadows);
+        spots
+            + levels::Levels::bytes(&cells, self.spheres.len())
+            + openness::Openness::bytes(&cells, pixels)
+            + lamps as u64 * lamps::Lamp::bytes(&cells, pixels)
     }
 
     /// The layers of the picture of ids from which a picture with these layers follows.
@@ -131,34 +144,43 @@ impl<'a> SmoothPicture<'a> {
 
     /// The light of some pixels, given with the ids of three rows of three pixels, of which they are the middle.
     pub(crate) fn pixels(&self, pixels: &[([u32; 2], [u32; 9])]) -> Vec<Averages> {
-        let Some((finder, lit, mut openness)) = self.tools() else { return Vec::new() };
+        let places = self.places();
+        let Some((finder, mut lit)) = self.tools(&places) else { return Vec::new() };
         let spots = parallel::map(pixels.len(), |at| {
             let (pixel, ids) = pixels[at];
             let mut found = Row::default();
             finder.pixel(pixel, ids[4], ids.into_iter(), &mut found);
             found
         });
-        openness.see(self.spheres, spots.iter().map(|row| row.all.iter()).collect());
-        parallel::map(pixels.len(), |at| self.averages(&lit, &openness, &spots[at].all))
+        lit.see(&spots);
+        parallel::map(pixels.len(), |at| self.averages(&lit, &spots[at].all))
     }
 
-    /// The tools of drawing: they find spots, light them, and have the tables of openness, without any visible points.
-    fn tools(&self) -> Option<(Finder<'a>, Lit<'a>, Openness)> {
-        let radius = self.settings.studio_parameters()?.occlusion?.radius.unwrap_or(f64::INFINITY);
-        let finder = Finder::new(self.spheres, self.origin, &self.view, &self.settings.sampling);
-        let lit = Lit::new(self.appearance, self.view.camera, self.settings)?;
-        Some((finder, lit, Openness::new(self.spheres, radius)))
+    /// The places of spheres, as far as light needs them.
+    fn places(&self) -> Places<'a> {
+        let (occludes, shadows) = self
+            .settings
+            .studio_parameters()
+            .map_or((false, false), |studio| (studio.occlusion.is_some(), studio.shadows));
+        Places::new(self.spheres, |cells| shadows || occludes && cells.has_near)
+    }
+
+    /// The tools of drawing: they find spots, and light them.
+    fn tools<'b>(&'b self, places: &'b Places<'b>) -> Option<(Finder<'a>, Lit<'b>)> {
+        let finder = Finder::new(self.spheres, self.origin, &self.view, self.settings);
+        Some((finder, Lit::new(self.appearance, self.view.camera, self.settings, places)?))
     }
 
     /// Writes colour, opacity, albedo and samples of all pixels. `go_on` learns the completed part several times, and stops
     /// the work by false. Returns the sum of all opacities, and `Picture::crowded`.
     fn draw_from(&self, ids: &[u32], image: &mut Image, mut go_on: impl FnMut(f64) -> bool) -> Option<(f64, usize)> {
-        let (finder, lit, mut openness) = self.tools()?;
+        let places = self.places();
+        let (finder, mut lit) = self.tools(&places)?;
         let [width, height] = [image.width(), image.height()].map(|side| side as usize);
         let mut opacity = 0.0;
         for rows in parallel::ranges(height, (BAND / width).max(1)) {
             let spots = parallel::map(rows.len(), |row| finder.row(ids, (rows.start + row) as u32));
-            openness.see(self.spheres, spots.iter().map(|row| row.all.iter()).collect());
+            lit.see(&spots);
             if !go_on((rows.start + rows.len() / 2) as f64 / height as f64) {
                 return None;
             }
@@ -169,7 +191,7 @@ impl<'a> SmoothPicture<'a> {
                 for (column, count) in row.counts.iter().enumerate() {
                     let (spots, others) = left.split_at(usize::from(*count));
                     left = others;
-                    let averages = self.averages(&lit, &openness, spots);
+                    let averages = self.averages(&lit, spots);
                     opacity += f64::from(averages.alpha);
                     to.set_averages(column, &averages);
                 }
@@ -180,15 +202,15 @@ impl<'a> SmoothPicture<'a> {
                 return None;
             }
         }
-        Some((opacity, openness.crowded))
+        Some((opacity, lit.crowded()))
     }
 
     /// The averages over the spots of a pixel.
-    fn averages(&self, lit: &Lit<'_>, openness: &Openness, spots: &[Spot]) -> Averages {
+    fn averages(&self, lit: &Lit<'_>, spots: &[Spot]) -> Averages {
         let (mut color, mut albedo, mut alpha) = (DVec3::ZERO, DVec3::ZERO, 0.0);
         for spot in spots {
             let share = f64::from(spot.share);
-            color += share * lit.color(spot, || openness.at(spot.position, spot.normal).into());
+            color += share * lit.color(spot);
             albedo += share * lit.albedo(spot.id).min(DVec3::ONE);
             alpha += share;
         }

@@ -7,7 +7,7 @@ use crate::camera::sampling::{pair, pixel_seed};
 use crate::camera::{View, filter};
 use crate::geometry::ray::Ray;
 use crate::image::NO_ID;
-use crate::render::Sampling;
+use crate::render::{RenderSettings, Sampling};
 
 /// A place on a sphere that a pixel shows, in the scene's frame.
 #[derive(Clone, Copy, Debug)]
@@ -19,6 +19,8 @@ pub(super) struct Spot {
     pub(super) out: DVec3,
     /// Distance from the start of the camera's ray.
     pub(super) distance: f64,
+    /// Width of the pixel at that distance.
+    pub(super) width: f64,
     pub(super) id: u32,
     /// The part of the pixel that shows the sphere.
     pub(super) share: f32,
@@ -42,6 +44,8 @@ pub(super) struct Finder<'a> {
     around: Film,
     /// The fixed places of rays in pixels at edges, counted from the centre.
     offsets: Vec<DVec2>,
+    /// Whether spots have the width of their pixels, which shadows need.
+    with_widths: bool,
 }
 
 /// The hits of a pixel's rays on one sphere.
@@ -59,13 +63,15 @@ struct Hits {
 const MOST: usize = 9;
 
 impl<'a> Finder<'a> {
-    pub(super) fn new(spheres: &'a [[f32; 4]], origin: DVec3, view: &View<'a>, sampling: &Sampling) -> Self {
+    pub(super) fn new(spheres: &'a [[f32; 4]], origin: DVec3, view: &View<'a>, settings: &RenderSettings) -> Self {
+        let sampling = &settings.sampling;
         let table = sampling.filter.offset_table();
         let seed = pixel_seed([0, 0], sampling.seed);
         let offset = |k| DVec2::from(pair(seed, k, 0).map(|u| filter::offset(&table, u)));
         // A single ray is at the centre.
         let offsets = (0..rays(sampling)).filter(|_| sampling.samples > 1).map(offset).collect();
-        Self { spheres, origin, view: *view, around: with_neighbors(&view.film), offsets }
+        let with_widths = settings.studio_parameters().is_some_and(|studio| studio.shadows);
+        Self { spheres, origin, view: *view, around: with_neighbors(&view.film), offsets, with_widths }
     }
 
     /// The spots of a row.
@@ -114,6 +120,17 @@ impl<'a> Finder<'a> {
         Some(Ray { origin: ray.origin - self.origin, ..ray })
     }
 
+    /// The width of a pixel at a distance from the camera, or 0 without need or if the camera does not see its sides.
+    fn width(&self, pixel: [u32; 2], distance: f64) -> f64 {
+        if !self.with_widths {
+            return 0.0;
+        }
+        match [-0.5, 0.5].map(|x| self.ray(pixel, DVec2::new(x, 0.0))) {
+            [Some(left), Some(right)] => (right.at(distance) - left.at(distance)).length(),
+            _ => 0.0,
+        }
+    }
+
     /// The spot that the ray through a pixel's centre hits.
     fn at_center(&self, pixel: [u32; 2], id: u32) -> Option<Spot> {
         let ray = self.ray(pixel, DVec2::ZERO).filter(|_| id != NO_ID)?;
@@ -122,7 +139,7 @@ impl<'a> Finder<'a> {
         let foot = (center - ray.origin).dot(ray.direction);
         let distance = distance(&ray, center, radius).unwrap_or(foot);
         let direction = ray.direction;
-        Some(self.spot(&Hits { id, count: 1, position: ray.at(distance), direction, distance }, 1))
+        Some(self.spot(pixel, &Hits { id, count: 1, position: ray.at(distance), direction, distance }, 1))
     }
 
     /// The spots that rays at the fixed places hit in a pixel at an edge, among the spheres `shown`.
@@ -164,12 +181,12 @@ impl<'a> Finder<'a> {
             spots.extend(self.at_center(pixel, shown[0]));
         }
         for (id, hits) in shown.iter().zip(hits).filter(|(_, hits)| hits.count > 0) {
-            spots.push(self.spot(&Hits { id: *id, ..hits }, all));
+            spots.push(self.spot(pixel, &Hits { id: *id, ..hits }, all));
         }
     }
 
     /// The spot in the middle of hits on one sphere, of `all` hits.
-    fn spot(&self, hits: &Hits, all: u32) -> Spot {
+    fn spot(&self, pixel: [u32; 2], hits: &Hits, all: u32) -> Spot {
         let Hits { id, count, position, direction, distance } = *hits;
         let (center, radius) = sphere(self.spheres, id);
         let mean = position / f64::from(count);
@@ -177,11 +194,13 @@ impl<'a> Finder<'a> {
         let outward = (mean - center).normalize_or(out);
         // Seen from inside, the normal points inwards.
         let normal = if outward.dot(out) < -1e-3 { -outward } else { outward };
+        let distance = distance / f64::from(count);
         Spot {
             position: center + radius * outward,
             normal,
             out,
-            distance: distance / f64::from(count),
+            distance,
+            width: self.width(pixel, distance),
             id,
             share: count as f32 / all as f32,
         }

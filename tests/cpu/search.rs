@@ -68,11 +68,7 @@ fn random_pictures() {
 }
 
 fn studio(random: &mut Rng, size: f64) -> RenderSettings {
-    let occlusion = Occlusion {
-        radius: random.bool().then(|| size * random.f64()),
-        samples: random.u32(1..4),
-        ..Occlusion::default()
-    };
+    let occlusion = Occlusion { radius: random.bool().then(|| size * random.f64()), samples: random.u32(1..4) };
     let cue = DepthCue { near: size, far: 4.0 * size, color: color(random) };
     let studio = Studio {
         occlusion: random.bool().then_some(occlusion),
@@ -170,7 +166,7 @@ fn many_equal_spheres_hide_light_by_their_own_opacity() {
         let mut settings = RenderSettings {
             integrator: Integrator::Studio(Studio {
                 shadows: true,
-                occlusion: Some(Occlusion { radius: None, samples: 4, ..Occlusion::default() }),
+                occlusion: Some(Occlusion { radius: None, samples: 4 }),
                 ..Studio::default()
             }),
             lights: Light::key_and_fill().to_vec(),

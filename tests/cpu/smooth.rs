@@ -16,10 +16,20 @@ use crate::support::spheres::{self, Spheres};
 
 /// Settings of white ambient light alone, so that a white sphere has the colour of its openness.
 fn ambient(radius: Option<f64>, samples: u32) -> RenderSettings {
-    let occlusion = Some(Occlusion { radius, is_smooth: true, ..Occlusion::default() });
-    let studio = Studio { ambient: LinearRgb::WHITE, shadows: false, occlusion, ..Studio::default() };
+    let occlusion = Some(Occlusion { radius, ..Occlusion::default() });
+    studio(&Studio { ambient: LinearRgb::WHITE, shadows: false, occlusion, ..Studio::default() }, samples)
+}
+
+/// Settings of a lamp alone, which casts shadows, so that a white sphere has the colour of its light.
+fn lamp(toward: DVec3, angular_radius: f64, samples: u32) -> RenderSettings {
+    let kind = LightKind::Directional { toward, strength: LinearRgb::WHITE, angular_radius };
+    let dark = Studio { ambient: LinearRgb::BLACK, occlusion: None, ..Studio::default() };
+    RenderSettings { lights: vec![Light { kind, frame: LightFrame::World }], ..studio(&dark, samples) }
+}
+
+fn studio(studio: &Studio, samples: u32) -> RenderSettings {
     RenderSettings {
-        integrator: Integrator::Studio(studio),
+        integrator: Integrator::Studio(Studio { is_smooth: true, ..studio.clone() }),
         sampling: Sampling { samples, ..Sampling::default() },
         background: LinearRgb::BLACK,
         ..RenderSettings::default()
@@ -45,23 +55,89 @@ fn picture(scene: &Scene, camera: &dyn Camera, film: Film, settings: &RenderSett
     cpu::render(&search, &View::new(camera, film), settings, LayerSet::ALL).unwrap()
 }
 
-/// The share of 400 directions, spread by the cosine, in which no sphere is near.
-fn by_rays(spheres: &Spheres, own: u32, point: DVec3, normal: DVec3, radius: f64) -> f64 {
-    let (right, up) = normal.any_orthonormal_pair();
-    let count = 400;
-    let is_open = |k: &usize| {
-        let share = (*k as f64 + 0.5) / count as f64;
-        let (sin, cos) = (2.399_963 * *k as f64).sin_cos();
-        let direction = share.sqrt() * (cos * right + sin * up) + (1.0 - share).sqrt() * normal;
+/// A point on a sphere in the scene's frame.
+struct Point {
+    own: u32,
+    at: DVec3,
+    normal: DVec3,
+}
+
+impl Point {
+    /// Returns true if a ray to a direction meets no other sphere that is nearer than `radius`.
+    fn is_open(&self, spheres: &Spheres, direction: DVec3, radius: f64) -> bool {
         !spheres.iter().enumerate().any(|(id, sphere)| {
             let [x, y, z, r] = sphere.map(f64::from);
-            let to = DVec3::new(x, y, z) - point;
+            let to = DVec3::new(x, y, z) - self.at;
             let along = to.dot(direction);
             let half = (r * r - (to - along * direction).length_squared()).max(0.0).sqrt();
-            id as u32 != own && half > 0.0 && along + half > 0.0 && along - half < radius
+            id as u32 != self.own && half > 0.0 && along + half > 0.0 && along - half < radius
         })
-    };
-    (0..count).filter(is_open).count() as f64 / count as f64
+    }
+
+    /// The share of 400 directions, spread by the cosine, in which no sphere is near.
+    fn openness(&self, spheres: &Spheres, radius: f64) -> f64 {
+        let open = |(x, y): &(f64, f64)| {
+            let (right, up) = self.normal.any_orthonormal_pair();
+            let direction = *x * right + *y * up + (1.0 - x * x - y * y).sqrt() * self.normal;
+            self.is_open(spheres, direction, radius)
+        };
+        on_disk().filter(open).count() as f64 / 400.0
+    }
+
+    /// The light of a lamp, as a share of what arrives where a surface faces it, by 400 rays to its disk.
+    fn light(&self, spheres: &Spheres, toward: DVec3, angular_radius: f64) -> f64 {
+        let (right, up) = toward.any_orthonormal_pair();
+        let (mut light, mut most) = (0.0, 0.0);
+        for (x, y) in on_disk() {
+            // Even in solid angle, as (1 - cos) is even.
+            let versine = (x * x + y * y) * (1.0 - angular_radius.cos());
+            let across = (versine * (2.0 - versine)).sqrt() / x.hypot(y);
+            let direction = across * (x * right + y * up) + (1.0 - versine) * toward;
+            most += 1.0 - versine;
+            if self.is_open(spheres, direction, f64::INFINITY) {
+                light += direction.dot(self.normal).max(0.0);
+            }
+        }
+        light / most
+    }
+}
+
+/// 400 points that are spread evenly over a disk of radius 1.
+fn on_disk() -> impl Iterator<Item = (f64, f64)> {
+    (0..400).map(|k| {
+        let across = ((f64::from(k) + 0.5) / 400.0).sqrt();
+        let (sin, cos) = (2.399_963 * f64::from(k)).sin_cos();
+        (across * cos, across * sin)
+    })
+}
+
+/// The points that pixels of a picture by one ray each show, every other one, with their colours.
+fn points(scene: &Scene, image: &Image) -> Vec<(Point, f64)> {
+    let hits = image.id().unwrap().iter().zip(image.position().unwrap()).zip(image.normal().unwrap());
+    (hits.zip(image.color()))
+        .filter(|(((id, _), _), _)| **id != pinhole::image::NO_ID)
+        .step_by(2)
+        .map(|(((own, at), normal), color)| {
+            let [at, normal] = [at, normal].map(|v| DVec3::from(v.map(f64::from)));
+            (Point { own: *own, at: at - scene.origin(), normal }, f64::from(color[0]))
+        })
+        .collect()
+}
+
+/// The root mean square of errors, and the magnitude below which 95 of 100 are.
+fn spread(mut errors: Vec<f64>) -> (f64, f64) {
+    assert!(errors.len() > 150, "{}", errors.len());
+    let rms = (errors.iter().map(|e| e * e).sum::<f64>() / errors.len() as f64).sqrt();
+    errors.sort_by(|a, b| a.abs().total_cmp(&b.abs()));
+    (rms, errors[errors.len() * 95 / 100].abs())
+}
+
+/// Scenes with shadows and pockets of any kind.
+fn crowds() -> [(&'static str, Spheres); 4] {
+    let packed = spheres::scaled(&spheres::random(700, 5, |rng| 0.04 + 0.02 * rng.f32()), 10.0);
+    let slab = spheres::lattice(14).into_iter().filter(|[_, _, z, _]| *z < 4.0).collect();
+    let even = spheres::scaled(&spheres::random(400, 6, |_| 0.05), 8.0);
+    [("packed", packed), ("slab", slab), ("even", even), ("chains", chains())]
 }
 
 /// Chains of balls with rows of smaller balls between them, as sticks are drawn.
@@ -85,27 +161,34 @@ fn chains() -> Spheres {
 
 #[test]
 fn openness_is_close_to_rays() {
-    let packed = spheres::scaled(&spheres::random(700, 5, |rng| 0.04 + 0.02 * rng.f32()), 10.0);
-    let slab = spheres::lattice(14).into_iter().filter(|[_, _, z, _]| *z < 4.0).collect();
-    let even = spheres::scaled(&spheres::random(400, 6, |_| 0.05), 8.0);
-    for (name, spheres) in [("packed", packed), ("slab", slab), ("even", even), ("chains", chains())] {
+    for (name, spheres) in crowds() {
         let scene = white(&spheres);
         let radius = 0.2 * scene.bounds_to_frame().size().length();
-        let camera = camera(&scene);
-        let image = picture(&scene, &camera, Film::new(40, 40).unwrap(), &ambient(Some(radius), 1));
-        let hits = image.id().unwrap().iter().zip(image.position().unwrap()).zip(image.normal().unwrap());
-        let mut errors: Vec<f64> = (hits.zip(image.color()))
-            .filter(|(((id, _), _), _)| **id != pinhole::image::NO_ID)
-            .step_by(2)
-            .map(|(((id, position), normal), color)| {
-                let [point, normal] = [position, normal].map(|v| DVec3::from(v.map(f64::from)));
-                f64::from(color[0]) - by_rays(&spheres, *id, point - scene.origin(), normal, radius)
-            })
-            .collect();
-        let rms = (errors.iter().map(|e| e * e).sum::<f64>() / errors.len() as f64).sqrt();
-        errors.sort_by(|a, b| a.abs().total_cmp(&b.abs()));
-        let most = errors[errors.len() * 95 / 100].abs();
-        assert!(errors.len() > 150 && rms < 0.055 && most < 0.11, "{name}: {rms} rms, 95 % below {most}");
+        let image = picture(&scene, &camera(&scene), Film::new(40, 40).unwrap(), &ambient(Some(radius), 1));
+        let errors = points(&scene, &image).into_iter().map(|(point, color)| color - point.openness(&spheres, radius));
+        let (rms, most) = spread(errors.collect());
+        assert!(rms < 0.055 && most < 0.11, "{name}: {rms} rms, 95 % below {most}");
+    }
+}
+
+#[test]
+fn shadows_are_close_to_rays() {
+    let toward = unit(DVec3::new(-0.5, 0.8, 0.6)).unwrap();
+    for (name, spheres) in crowds() {
+        let scene = white(&spheres);
+        // A border is as wide as a pixel, or as directions are apart, where rays are stopped or not.
+        for (angular_radius, most_rms, most) in
+            [(0.0, 0.1, 0.28), (0.01, 0.09, 0.25), (0.05, 0.07, 0.2), (0.12, 0.05, 0.15), (0.25, 0.035, 0.09)]
+        {
+            let settings = lamp(toward, angular_radius, 1);
+            let image = picture(&scene, &camera(&scene), Film::new(40, 40).unwrap(), &settings);
+            let errors = points(&scene, &image)
+                .iter()
+                .map(|(point, color)| color - point.light(&spheres, toward, angular_radius))
+                .collect();
+            let (rms, worst) = spread(errors);
+            assert!(rms < most_rms && worst < most, "{name}, {angular_radius}: {rms} rms, 95 % below {worst}");
+        }
     }
 }
 
@@ -150,9 +233,9 @@ fn openness_belongs_to_a_surface_and_not_to_a_camera() {
 fn parts_of_a_film_are_as_the_whole() {
     let scene = white(&spheres::random(300, 8, |_| 0.07));
     let (camera, film) = (camera(&scene), Film::new(24, 18).unwrap());
-    let mut settings = ambient(None, 4);
+    let mut settings = lamp(DVec3::Y, 0.1, 4);
     if let Integrator::Studio(studio) = &mut settings.integrator {
-        studio.outline = Some(Outline::thin());
+        *studio = Studio { outline: Some(Outline::thin()), is_smooth: true, ..Studio::default() };
     }
     let whole = picture(&scene, &camera, film, &settings);
     let (unfinished, layers) = (settings.unfinished(), settings.layers_for(LayerSet::ALL));
@@ -202,7 +285,7 @@ fn pictures_with_chance_are_not_smooth() {
     let plain = ambient(None, 2);
     assert!(plain.is_smooth(&scene, &camera));
     let mut sun = plain.clone();
-    let kind = LightKind::Directional { toward: DVec3::Y, strength: LinearRgb::WHITE, angular_radius: 0.1 };
+    let kind = LightKind::Directional { toward: DVec3::Y, strength: LinearRgb::WHITE, angular_radius: 0.3 };
     sun.lights.push(Light { kind, frame: LightFrame::World });
     assert!(!sun.is_smooth(&scene, &camera));
     assert!(!plain.with_denoise(true).is_smooth(&scene, &camera));
@@ -214,17 +297,18 @@ fn pictures_with_chance_are_not_smooth() {
     }
 }
 
-/// The reference's own picture is exact; a pixel that was changed, or drawn without openness, is a violation.
+/// The reference's own picture is exact; a pixel that was changed, or drawn without openness or shadows, is a violation.
 #[test]
 fn forged_pixels_are_violations() {
     let scene = white(&spheres::random(400, 10, |_| 0.06));
     let (camera, film) = (camera(&scene), Film::new(40, 40).unwrap());
     let view = View::new(&camera, film);
-    let mut settings = ambient(Some(0.4), 4);
-    for has_lines in [false, true] {
-        if let (true, Integrator::Studio(studio)) = (has_lines, &mut settings.integrator) {
-            studio.outline = Some(Outline::thin());
-        }
+    let plain = ambient(Some(0.4), 4);
+    let mut lined = plain.clone();
+    if let Integrator::Studio(studio) = &mut lined.integrator {
+        studio.outline = Some(Outline::thin());
+    }
+    for (name, settings) in [("plain", plain), ("lined", lined), ("shadows", lamp(DVec3::Y, 0.1, 4))] {
         let image = picture(&scene, &camera, film, &settings);
         let encoding = Encoding::default();
         let exact: Vec<[f32; 4]> = image.color().iter().map(|[r, g, b]| [*r, *g, *b, 1.0]).collect();
@@ -250,7 +334,7 @@ fn forged_pixels_are_violations() {
             forged[j * 40 + i][1] += 0.02;
         }
         let found = judged(&forged);
-        assert_eq!(found.count(PixelVerdict::Violated), 3, "{has_lines}");
+        assert_eq!(found.count(PixelVerdict::Violated), 3, "{name}");
         let bright: Vec<[f32; 4]> = exact.iter().map(|pixel| pixel.map(|c| c.min(1.0).sqrt())).collect();
         assert_eq!(judged(&bright).outcome(), Outcome::Violated);
     }

@@ -183,7 +183,7 @@ fn many_for_studio() -> View {
     let mut view = view("studio", "sharp_shadows");
     view.settings.lights.truncate(2);
     if let Integrator::Studio(studio) = &mut view.settings.integrator {
-        studio.occlusion = Some(Occlusion { radius: Some(0.6), samples: 2, ..Occlusion::default() });
+        studio.occlusion = Some(Occlusion { radius: Some(0.6), samples: 2 });
     }
     View { scene: Scene::new(&spheres).unwrap(), ..view }
 }

@@ -175,9 +175,9 @@ pub(crate) fn none_violated(judged: &[FinishedCertificate]) -> Result<(), Failed
 
 /// Judges a picture in which nothing is random, of the spheres of a view.
 fn smooth(mut view: View) -> Result<(), Failed> {
-    let occlusion = Occlusion { is_smooth: true, ..Occlusion::default() };
     let outline = Some(Outline { depth: 1e-3, ..Outline::default() });
-    let studio = Studio { shadows: false, occlusion: Some(occlusion), outline, ..Studio::default() };
+    let occlusion = Some(Occlusion::default());
+    let studio = Studio { is_smooth: true, occlusion, outline, ..Studio::default() };
     let sampling = Sampling { samples: 8, ..Sampling::default() };
     view.settings = RenderSettings { integrator: Integrator::Studio(studio), sampling, ..RenderSettings::studio() };
     if !view.settings.is_smooth(&view.scene, view.camera.as_ref()) {

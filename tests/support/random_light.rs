@@ -269,7 +269,7 @@ impl Random {
         let lights = if self.chance(0.05) { 40 } else { self.0.usize(0..5) };
         let directions = if self.chance(0.05) { 40 } else { self.0.u32(1..6) };
         let radius = self.chance(0.6).then(|| self.between(0.1, 3.0));
-        let occlusion = Occlusion { radius, samples: directions, ..Occlusion::default() };
+        let occlusion = Occlusion { radius, samples: directions };
         let near = self.between(0.0, 6.0);
         let cue = DepthCue { near, far: near + self.between(0.1, 8.0), color: self.color(1.0) };
         let mut ground = self.chance(0.5).then(|| self.ground());
@@ -282,7 +282,7 @@ impl Random {
             shadows: self.chance(0.8),
             max_surfaces: self.0.u32(1..8),
             depth_cue: self.chance(0.4).then_some(cue),
-            outline: None,
+            ..Studio::default()
         };
         let path = self.settings();
         RenderSettings {

@@ -238,8 +238,8 @@ fn judged(pictures: Vec<(Picture, Watching)>, total: u32, is_stopped: bool) -> V
         verdict.iter().for_each(tell);
         if picture.crowded > 0 {
             tell(
-                "note: around some places there are so many spheres that the smallest do not dim ambient light; --ao takes \
-                  random rays, which meet all of them",
+                "note: around some places there are so many spheres that some do not dim ambient light or cast no shadows; --ao \
+                  takes random rays, which meet all of them",
             );
         }
     }

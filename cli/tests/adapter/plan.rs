@@ -123,7 +123,7 @@ fn bench(headless: &'static Headless) {
     assert!(text.contains("list: list") && text.contains("Mrays/s"), "{text}");
     let text = stdout(&folder, "bench a.npy --reps 1 --size 32x24 --accel tiles");
     assert!(text.contains("tiles: tiles"), "{text}");
-    for refused in ["render a.npy --accel tiles -o out.png --style studio", "verify a.npy --accel tiles"] {
+    for refused in ["render a.npy --accel tiles -o out.png --style path", "verify a.npy --accel tiles"] {
         let output = run(&folder, refused);
         let line = String::from_utf8(output.stderr).unwrap();
         assert!(

@@ -3,16 +3,17 @@
 use glam::{DVec3, Vec3};
 
 use super::Openness;
-use super::cells::corners;
 use super::far::DIRECTIONS;
+use crate::smooth::cells::corners;
 
 /// The part of all directions that belongs to each, divided by that of a half sphere, so that it is the height of a cap.
 const PART: f32 = 4.0 / DIRECTIONS as f32;
 
-impl Openness {
+impl Openness<'_> {
     /// The share of ambient light that reaches a point of a surface, whose tables are complete.
     pub(in crate::smooth) fn at(&self, position: DVec3, normal: DVec3) -> f32 {
-        let (side, n) = (self.cells.side as f32, normal.as_vec3());
+        let cells = &self.places.cells;
+        let (side, n) = (cells.side as f32, normal.as_vec3());
         // The directions above the horizon, with the cosines of their angles to the normal. Others count nothing.
         let (mut above, mut count) = (Above::default(), 0);
         for (k, direction) in self.directions.iter().enumerate() {
@@ -24,10 +25,10 @@ impl Openness {
         let Above { x: dx, y: dy, z: dz, cosine, number } = above;
         // The part of each direction that near spheres hide: the most that any of them hides.
         let mut hidden = [0.0_f32; MOST_ABOVE];
-        let (near, middle) = self.near_of(position);
-        let position_in_cube = (position - middle).as_vec3();
+        let cube = cells.cube_of(position);
+        let position_in_cube = (position - cells.middle(cube)).as_vec3();
         let end = self.near_end;
-        for [x, y, z, radius] in near {
+        for [x, y, z, radius] in self.near.of(cube) {
             let v = Vec3::new(*x, *y, *z) - position_in_cube;
             // Most spheres of a list are too far away, or below the horizon.
             let over = n.dot(v) + radius;
@@ -51,7 +52,7 @@ impl Openness {
                 hidden[k] = if hidden[k] > hides { hidden[k] } else { hides };
             }
         }
-        let (first, parts) = self.cells.tetrahedron(position, normal);
+        let (first, parts) = cells.tetrahedron(position, normal);
         let corners = corners(first, parts).map(|(vertex, weight)| (self.far_of(vertex), weight as f32 / 255.0));
         let (mut open, mut all) = (0.0, 0.0);
         for k in 0..count {

@@ -4,7 +4,7 @@ use std::f64::consts::PI;
 
 use glam::{DVec3, IVec3};
 
-use super::cells::{Cells, index};
+use crate::smooth::cells::{Cells, index};
 
 /// The number of directions in which openness is computed.
 pub(super) const DIRECTIONS: usize = 32;
@@ -51,9 +51,10 @@ impl Rays {
         Self { rays, passing: (0..=OPAQUE).map(share).collect() }
     }
 
-    /// The share of light, of 255, that passes along each direction from the middle of a cell.
-    pub(super) fn from(&self, cells: &Cells, vertex: IVec3) -> [u8; DIRECTIONS] {
-        std::array::from_fn(|k| self.passing[self.rays[k].sum(cells, vertex)])
+    /// The share of light, of 255, that passes along each direction from the middle of a cell. `filled` has the counts of
+    /// all cells.
+    pub(super) fn from(&self, cells: &Cells, filled: &[u8], vertex: IVec3) -> [u8; DIRECTIONS] {
+        std::array::from_fn(|k| self.passing[self.rays[k].sum(cells, filled, vertex)])
     }
 }
 
@@ -80,7 +81,7 @@ impl Ray {
     }
 
     /// The sum of weighted counts along the ray from a cell, up to [`OPAQUE`].
-    fn sum(&self, cells: &Cells, vertex: IVec3) -> usize {
+    fn sum(&self, cells: &Cells, filled: &[u8], vertex: IVec3) -> usize {
         let start = index(cells.counts, vertex) as i32;
         let steps = [0, 1, 2].map(|axis| {
             let (is_forward, within) = &self.within[axis];
@@ -89,7 +90,7 @@ impl Ray {
         });
         let mut sum = 0;
         for (distance, weight) in &self.steps[..steps.into_iter().min().unwrap_or(0)] {
-            sum += weight * u32::from(cells.filled[(start + distance) as usize]);
+            sum += weight * u32::from(filled[(start + distance) as usize]);
             if sum >= OPAQUE as u32 {
                 return OPAQUE;
             }

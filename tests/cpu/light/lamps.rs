@@ -243,7 +243,7 @@ fn ambient_light_between_two_spheres() {
     // So large that a pixel is nearly a point.
     let shot = Shot::new(&spheres, [0.0, 0.0, 0.0], 1.0, 1 << 12);
     let samples = 64;
-    let lighting = occluded(samples, Occlusion { radius: None, samples: 64, ..Occlusion::default() });
+    let lighting = occluded(samples, Occlusion { radius: None, samples: 64 });
     let picture = shot.picture(&lighting);
     let mut darkest = 1.0;
     for k in 0..200 {
@@ -268,7 +268,7 @@ fn the_radius_ends_occlusion() {
     let spheres = [white([0.0; 3], 1.0), white([0.0, 0.0, 4.0], 1.0)];
     let shot = Shot::new(&spheres[..], [0.6, 0.0, 1.0], 0.2, 8);
     let colors = |radius| {
-        let image = shot.render(&occluded(16, Occlusion { radius, samples: 16, ..Occlusion::default() }));
+        let image = shot.render(&occluded(16, Occlusion { radius, samples: 16 }));
         image.color().iter().map(|c| f64::from(c[0])).sum::<f64>() / 64.0
     };
     assert_eq!(colors(Some(1.5)), 1.0);
@@ -284,7 +284,7 @@ fn shadows_on_nothing() {
     let spheres = [Sphere::new(center.to_array(), 1.0, LinearRgb::BLACK)];
     let from_above = sun(DVec3::new(1.0, 1.0, 0.0), LinearRgb::WHITE, 0.0);
     let ground = ground(DVec3::ZERO, DVec3::Y, LinearRgb::BLACK);
-    let base = occluded(16, Occlusion { radius: None, samples: 64, ..Occlusion::default() });
+    let base = occluded(16, Occlusion { radius: None, samples: 64 });
     let lighting = RenderSettings {
         lights: vec![light(from_above)],
         ground: Some(Ground { is_shadow_catcher: true, ..ground }),

@@ -130,7 +130,7 @@ fn inside_a_shell() {
 /// Points of a plane that carries spheres, and of the spheres, do not occlude themselves.
 #[test]
 fn open_surfaces_hide_nothing_of_themselves() {
-    let occlusion = Some(Occlusion { radius: None, samples: 16, ..Occlusion::default() });
+    let occlusion = Some(Occlusion { radius: None, samples: 16 });
     for scale in SCALES {
         for place in PLACES {
             let studio = Studio { ambient: LinearRgb::WHITE, occlusion, ..Studio::default() };

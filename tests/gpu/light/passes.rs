@@ -155,7 +155,7 @@ fn long_list(headless: &'static Headless) {
     view.film = Film::new(40, 32).unwrap();
     view.settings.sampling.samples = 1;
     let Integrator::Studio(studio) = &mut view.settings.integrator else { panic!("no studio") };
-    studio.occlusion = Some(Occlusion { radius: None, samples: 16, ..Occlusion::default() });
+    studio.occlusion = Some(Occlusion { radius: None, samples: 16 });
     let pictures = [AccelChoice::List, AccelChoice::Grid].map(|choice| {
         let buffers = view.uploaded(headless, choice);
         view.watched(headless, &buffers, LayerSet::COLOR, &mut go_on).unwrap().image
@@ -204,7 +204,7 @@ fn unfinished_in_one_pass(headless: &'static Headless) {
     // first call in the second tile comes before its slices, and the second call after them.
     view.film = Film::new(800, 1300).unwrap();
     let Integrator::Studio(studio) = &mut view.settings.integrator else { panic!("no studio") };
-    studio.occlusion = Some(Occlusion { radius: None, samples: 24, ..Occlusion::default() });
+    studio.occlusion = Some(Occlusion { radius: None, samples: 24 });
     finish_within_a_batch(headless, &mut view, 1, 2);
 }
 

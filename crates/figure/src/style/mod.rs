@@ -116,8 +116,7 @@ fn fit_smooth(
     radius_in_pixels: Option<f64>,
     is_smooth: impl Fn(&RenderSettings) -> bool,
 ) {
-    let is_wanted = settings.studio_parameters().and_then(|studio| studio.occlusion).is_some_and(|o| o.is_smooth);
-    if !is_wanted {
+    if !settings.studio_parameters().is_some_and(|studio| studio.is_smooth) {
         return;
     }
     let are_seen = radius_in_pixels.is_none_or(|radius| radius >= LEAST_RADIUS_OF_SMOOTH);
@@ -128,9 +127,9 @@ fn fit_smooth(
         return;
     }
     settings.sampling.denoise = denoise;
-    if let Integrator::Studio(Studio { occlusion: Some(occlusion), .. }) = &mut settings.integrator {
+    if let Integrator::Studio(studio) = &mut settings.integrator {
         // What the file asks for stays, so that a note can say why it is not so.
-        occlusion.is_smooth = given.smooth;
+        studio.is_smooth = given.smooth;
     }
 }
 

@@ -236,10 +236,11 @@ fn every_style_is_read_as_it_was_written() {
 fn a_studio_with_everything_is_read_as_it_was_written() {
     let studio = Studio {
         ambient: LinearRgb::new([0.1, 0.2, 1.0 / 3.0]).unwrap(),
-        occlusion: Some(Occlusion { radius: Some(1e-3), samples: 7, ..Occlusion::default() }),
+        occlusion: Some(Occlusion { radius: Some(1e-3), samples: 7 }),
         depth_cue: Some(DepthCue { near: 0.1, far: 1e5, color: LinearRgb::new([0.7; 3]).unwrap() }),
         outline: Some(Outline { angle: 0.1 + 0.2, ..Outline::thin() }),
         max_surfaces: 3,
+        is_smooth: true,
         shadows: false,
     };
     let settings = RenderSettings { integrator: Integrator::Studio(studio), ..RenderSettings::studio() };

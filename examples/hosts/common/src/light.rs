@@ -15,7 +15,7 @@ pub fn background() -> LinearRgb {
 pub fn studio(angle: f64, samples: u32) -> RenderSettings {
     let studio = Studio {
         ambient: LinearRgb::from_srgb8([188; 3]),
-        occlusion: Some(Occlusion { radius: Some(1.5), samples: 1, ..Occlusion::default() }),
+        occlusion: Some(Occlusion { radius: Some(1.5), samples: 1 }),
         ..Studio::default()
     };
     let (x, y) = angle.sin_cos();

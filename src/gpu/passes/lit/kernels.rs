@@ -87,9 +87,6 @@ impl Schedule {
 /// The pictures whose samples one pass takes as a whole.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub(crate) enum OnePass {
-    /// A studio of opaque spheres without a ground, whose surfaces are all matt. Its lamps are at the eye or infinitely
-    /// far away, and have no size and no shadows.
-    Sharp,
     /// A studio of opaque spheres with any lamps without a ground.
     Lamps,
     /// A studio of opaque spheres with any lamps and a ground.
@@ -100,8 +97,7 @@ pub(crate) enum OnePass {
 
 impl OnePass {
     /// All kinds of such pictures.
-    pub(crate) const ALL: [Self; 7] = [
-        Self::Sharp,
+    pub(crate) const ALL: [Self; 6] = [
         Self::Lamps,
         Self::Ground,
         Self::Paths(Materials::Matt, Sources::None),
@@ -119,7 +115,7 @@ impl OnePass {
     fn mode(self) -> Mode {
         match self {
             Self::Paths(materials, sources) => Mode::Path(materials, sources, SkyKind::Plain),
-            Self::Sharp | Self::Lamps | Self::Ground => Mode::Studio,
+            Self::Lamps | Self::Ground => Mode::Studio,
         }
     }
 
@@ -223,7 +219,7 @@ impl LitKey {
         Kernel::new(entry_point, &[structure_choice(structure), ("$sky", sky)])
             .with(self.mode.constants())
             .with([camera_constant(self.camera), exclude_by.constant()])
-            .with([("IS_SHARP", is_pass(OnePass::Sharp)), ("HAS_GROUND", is_pass(OnePass::Ground))])
+            .with([("HAS_GROUND", is_pass(OnePass::Ground))])
             .with([brick_pass.constant(), schedule.constant()])
     }
 }

@@ -31,8 +31,6 @@ pub(crate) struct LightingData {
     pub(crate) max_surfaces: u32,
     /// Whether all spheres are opaque.
     is_opaque: bool,
-    /// Whether lights have no size, no place and no shadows, and all surfaces are matt.
-    is_sharp: bool,
     /// Whether lights cast shadows in a studio.
     pub(super) shadows: bool,
     /// The image of the sky that illuminates paths.
@@ -54,7 +52,6 @@ impl LightingData {
             emitters: if sources.emitters { emitter_records(&scene.emitters, &scene.emissive) } else { Vec::new() },
             max_surfaces: max_surfaces(settings, scene.appearance.is_opaque()),
             is_opaque: scene.appearance.is_opaque(),
-            is_sharp: is_sharp(settings, scene, &lights),
             shadows: settings.studio_parameters().is_some_and(|studio| studio.shadows),
             sky: match (&settings.sky.light, &settings.integrator) {
                 (SkyLight::Image { environment, .. }, Integrator::Path(_)) => Some(Arc::clone(environment)),
@@ -103,11 +100,7 @@ impl LightingData {
         let is_few = self.casts_shadow.len() <= BITS && self.parameters.occlusion_samples as usize <= BITS;
         let is_one = self.is_opaque && bricks == 1 && is_few;
         let has_ground = self.parameters.flags & flags::GROUND != 0;
-        is_one.then_some(match (has_ground, self.is_sharp) {
-            (true, _) => OnePass::Ground,
-            (false, true) => OnePass::Sharp,
-            (false, false) => OnePass::Lamps,
-        })
+        is_one.then_some(if has_ground { OnePass::Ground } else { OnePass::Lamps })
     }
 
     /// Maximum number of loop iterations of a path apart from searching, as
@@ -136,13 +129,6 @@ impl LightingData {
     pub(crate) fn table_bytes(&self) -> u64 {
         size_of_val(&self.tables[..]) as u64
     }
-}
-
-/// Whether lights have no size, no place and no shadows, and all surfaces are matt.
-fn is_sharp(settings: &RenderSettings, scene: &SceneSummary, lights: &[LightKind]) -> bool {
-    let shadows = settings.studio_parameters().is_some_and(|studio| studio.shadows);
-    let is_sharp = |light: &LightKind| matches!(light, LightKind::Head { .. }) || light.is_sharp() && !shadows;
-    lights.iter().all(is_sharp) && scene.appearance.surfaces().iter().all(is_matt)
 }
 
 fn mode_of(settings: &RenderSettings, scene: &SceneSummary, sources: &SourceList) -> Mode {

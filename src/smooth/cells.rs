@@ -1,7 +1,5 @@
 //! The cells, and how many of their sample points are inside spheres.
 
-use std::sync::atomic::{AtomicBool, Ordering};
-
 use glam::{DVec3, IVec3};
 
 use crate::parallel;
@@ -26,18 +24,10 @@ pub(super) struct Cells {
     pub(super) counts: [usize; 3],
     /// True if near spheres count one by one, which they do unless cells are much larger than spheres.
     pub(super) has_near: bool,
-    /// For each cell the number of its sample points, of eight, that are inside spheres.
-    pub(super) filled: Vec<u8>,
 }
 
 impl Cells {
     pub(super) fn new(spheres: &[[f32; 4]]) -> Self {
-        let cells = Self::unfilled(spheres);
-        Self { filled: cells.fill(spheres), ..cells }
-    }
-
-    /// Cells whose sample points have not been counted.
-    pub(super) fn unfilled(spheres: &[[f32; 4]]) -> Self {
         let bounds = bounds_in_frame(DVec3::ZERO, spheres);
         let wanted = if bounds.is_some() { wanted_side(spheres) } else { 1.0 };
         let [low, size] = bounds.map_or([DVec3::ZERO; 2], |bounds| [bounds.min(), bounds.size()]);
@@ -48,7 +38,7 @@ impl Cells {
         }
         let counts = counts_of(side).to_array().map(|count| count as usize);
         let has_near = side <= MOST_GROWN * wanted;
-        Self { origin: low - AROUND * side, side, counts, has_near, filled: Vec::new() }
+        Self { origin: low - AROUND * side, side, counts, has_near }
     }
 
     /// The position of a point, in cells.
@@ -56,8 +46,8 @@ impl Cells {
         (position - self.origin) / self.side
     }
 
-    /// Counts the sample points inside spheres. Each thread fills some layers.
-    fn fill(&self, spheres: &[[f32; 4]]) -> Vec<u8> {
+    /// The number of sample points, of eight, inside spheres, for each cell. Each thread fills some layers.
+    pub(super) fn fill(&self, spheres: &[[f32; 4]]) -> Vec<u8> {
         let [x, y, z] = self.counts;
         let mut bits = vec![0; x * y * z];
         let layers = z.div_ceil(parallel::threads()).max(1);
@@ -110,16 +100,6 @@ impl Cells {
         self.side * if self.has_near { 0.8 } else { 0.4 }
     }
 
-    /// Marks the vertices and the cubes whose tables the openness of a point needs.
-    pub(super) fn needs(&self, position: DVec3, normal: DVec3, vertices: &[AtomicBool], cubes: &[AtomicBool]) {
-        let mark = |all: &[AtomicBool], place| {
-            all[index(self.cube_counts(), place) as usize].store(true, Ordering::Relaxed);
-        };
-        let (first, parts) = self.tetrahedron(position, normal);
-        corners(first, parts).into_iter().for_each(|(vertex, _)| mark(vertices, vertex));
-        mark(cubes, self.cube(position));
-    }
-
     /// The whole part of a place among cubes or vertices, of which there are `more` beyond it along each axis.
     fn within(&self, place: DVec3, more: i32) -> IVec3 {
         let counts = self.cube_counts();
@@ -136,13 +116,9 @@ impl Cells {
         (first, (place - first.as_dvec3()).clamp(DVec3::ZERO, DVec3::ONE))
     }
 
-    fn cube(&self, position: DVec3) -> IVec3 {
-        self.within(self.in_cells(position) / 2.0, 1)
-    }
-
     /// The number of the cube of a point.
     pub(super) fn cube_of(&self, position: DVec3) -> u32 {
-        index(self.cube_counts(), self.cube(position))
+        index(self.cube_counts(), self.within(self.in_cells(position) / 2.0, 1))
     }
 
     /// The cell of a vertex.
