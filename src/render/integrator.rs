@@ -150,8 +150,8 @@ pub struct Studio {
     /// Whether lights cast shadows. Spheres that are not opaque cast no shadows.
     pub shadows: bool,
     /// True for a picture without chance, and so without noise, where spheres are opaque and have no gloss, there are no
-    /// ground, lens or denoising, and lights are at the eye or infinitely far away and not wider than 15°. Other pictures
-    /// take random rays.
+    /// ground, lens or denoising, and lights are at the eye, or infinitely far away with an angular radius of at most 15°.
+    /// Other pictures take random rays.
     #[serde(rename = "smooth")]
     pub is_smooth: bool,
     /// The largest number of translucent surfaces that are visible behind each other: 1 to 64.

@@ -9,11 +9,11 @@ use std::sync::atomic::{AtomicUsize, Ordering};
 
 use glam::{DVec3, Vec3};
 
+use super::caps::Cap;
 #[cfg(feature = "gpu")]
 use super::cells::Cells;
-use super::levels::Cone;
+use super::levels::{Cone, Places};
 use super::lists::{CubeLists, Needed};
-use super::places::Places;
 use super::spots::{Spot, sphere};
 
 /// The number of directions of a lamp with a width.
@@ -122,7 +122,7 @@ impl Lamp {
     }
 }
 
-/// What a spot sees of a lamp.
+/// The light of a lamp that reaches a spot, sphere by sphere in the way.
 struct Sight<'a> {
     lamp: &'a Lamp,
     spot: &'a Spot,
@@ -166,16 +166,9 @@ impl<'a> Sight<'a> {
         let a = v * (slope / distance);
         let b = 0.5 * most - slope * (1.0 - wide * wide).sqrt();
         let Lamp { x, y, z, .. } = self.lamp;
-        let count = x.len();
-        let (y, z, hidden, cosines) = (&y[..count], &z[..count], &mut self.hidden[..count], &self.cosines[..count]);
-        let mut arriving = 0.0;
-        for k in 0..count {
-            let hides = a.x * x[k] + a.y * y[k] + a.z * z[k] + b;
-            let hides = if hides < most { hides } else { most };
-            hidden[k] = if hidden[k] > hides { hidden[k] } else { hides };
-            arriving += cosines[k] * (1.0 - hidden[k]);
-        }
-        self.arriving = arriving;
-        arriving > self.least
+        let hidden = &mut self.hidden[..x.len()];
+        Cap { a, b, most }.hide([x, y, z], hidden);
+        self.arriving = self.cosines.iter().zip(hidden).map(|(cosine, hidden)| cosine * (1.0 - *hidden)).sum();
+        self.arriving > self.least
     }
 }

@@ -12,6 +12,14 @@ use crate::parallel;
 /// more than two cubes beside that of their centre.
 const LARGEST: f64 = 1.9;
 
+/// The spheres of a scene in cells and, as far as light needs them one by one, by size and place.
+#[derive(Debug)]
+pub(super) struct Places<'a> {
+    pub(super) spheres: &'a [[f32; 4]],
+    pub(super) cells: Cells,
+    pub(super) levels: Levels,
+}
+
 /// The levels of spheres of similar size, from small ones on.
 #[derive(Debug)]
 pub(super) struct Levels(Vec<Level>);
@@ -31,7 +39,7 @@ struct Level {
 struct Grid {
     side: f64,
     counts: [usize; 3],
-    /// Whether there are spheres in each cube. Empty for the smallest cubes, which `starts` counts.
+    /// True for cubes with spheres. Empty for the smallest cubes, which `starts` counts.
     has_any: Vec<bool>,
 }
 

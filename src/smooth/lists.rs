@@ -2,7 +2,7 @@
 
 use std::sync::atomic::{AtomicBool, Ordering};
 
-use super::places::Places;
+use super::levels::Places;
 use super::spots::Row;
 use crate::parallel;
 

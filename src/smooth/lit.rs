@@ -5,14 +5,14 @@ use std::sync::atomic::Ordering;
 use glam::DVec3;
 
 use super::lamps::Lamp;
+use super::levels::Places;
 use super::lists::Needed;
 use super::openness::Openness;
-use super::places::Places;
 use super::spots::{Row, Spot};
 use crate::camera::Camera;
 use crate::geometry::math::wide;
 use crate::light::LightKind;
-use crate::render::{RenderSettings, Studio};
+use crate::render::{Occlusion, RenderSettings, Studio};
 use crate::scene::SceneAppearance;
 use crate::scene::material::Material;
 
@@ -45,7 +45,7 @@ impl<'a> Lit<'a> {
             LightKind::Point { .. } | LightKind::Sphere { .. } => None,
         });
         let lamps = lamps.collect();
-        let radius = |occlusion: &crate::render::Occlusion| occlusion.radius.unwrap_or(f64::INFINITY);
+        let radius = |occlusion: &Occlusion| occlusion.radius.unwrap_or(f64::INFINITY);
         let openness = studio.occlusion.as_ref().map(|occlusion| Openness::new(places, radius(occlusion)));
         let background = if settings.is_transparent { DVec3::ZERO } else { wide(settings.background.to_array()) };
         Some(Self { appearance, studio, lamps, openness, places, background })

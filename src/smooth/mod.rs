@@ -13,22 +13,23 @@ use glam::DVec3;
 use crate::camera::{Camera, View};
 use crate::image::{Averages, Image, ImageTooLarge, Layer, LayerSet, outline};
 #[cfg(feature = "gpu")]
-use crate::light::{Light, LightKind};
+use crate::light::LightKind;
 use crate::parallel;
-use crate::render::{Decision, Picture, Progress, RenderSettings, Watch};
+use crate::render::{Decision, Picture, Progress, RenderSettings, Studio, Watch};
 use crate::scene::material::Material;
 use crate::scene::{Scene, SceneAppearance};
+use cells::Cells;
+use levels::{Levels, Places};
 use lit::Lit;
-use places::Places;
 use spots::{Finder, Row, Spot, rays, with_neighbors};
 
+mod caps;
 mod cells;
 mod lamps;
 mod levels;
 mod lists;
 mod lit;
 mod openness;
-mod places;
 mod spots;
 
 /// The number of pixels that are drawn together, which bounds the memory for [`Spot`]s.
@@ -50,7 +51,7 @@ fn is_smooth(settings: &RenderSettings, appearance: &SceneAppearance, camera: &d
 impl RenderSettings {
     /// Returns true if nothing is random in the picture: a [smooth](crate::render::Studio::is_smooth) studio is asked for, no
     /// noise is to be removed, all spheres are opaque and have no gloss, there is no ground and no lens, and lights are at
-    /// the eye or infinitely far away and not wider than 15°. Such a picture follows from the spheres that rays through the
+    /// the eye, or infinitely far away with an angular radius of at most 15°. Such a picture follows from the spheres that rays through the
     /// centres of pixels hit.
     #[must_use]
     pub fn is_smooth(&self, scene: &Scene, camera: &dyn Camera) -> bool {
@@ -96,12 +97,12 @@ impl<'a> SmoothPicture<'a> {
     pub(crate) fn bytes(&self) -> u64 {
         let pixels = self.view.film.pixel_count();
         let spots = pixels.min(BAND as u64) * 2 * size_of::<Spot>() as u64;
-        let cells = cells::Cells::new(self.spheres);
-        let casts_shadow = |light: &&Light| matches!(light.kind, LightKind::Directional { .. });
-        let has_shadows = self.settings.studio_parameters().is_some_and(|studio| studio.shadows);
-        let lamps = self.settings.lights.iter().filter(casts_shadow).count() * usize::from(has_shadows);
+        let cells = Cells::new(self.spheres);
+        let shadows = self.settings.studio_parameters().is_some_and(|studio| studio.shadows);
+        let is_lamp = |kind| shadows && matches!(kind, LightKind::Directional { .. });
+        let lamps = self.settings.lights.iter().filter(|light| is_lamp(light.kind)).count();
         spots
-            + levels::Levels::bytes(&cells, self.spheres.len())
+            + Levels::bytes(&cells, self.spheres.len())
             + openness::Openness::bytes(&cells, pixels)
             + lamps as u64 * lamps::Lamp::bytes(&cells, pixels)
     }
@@ -158,11 +159,10 @@ impl<'a> SmoothPicture<'a> {
 
     /// The places of spheres, as far as light needs them.
     fn places(&self) -> Places<'a> {
-        let (occludes, shadows) = self
-            .settings
-            .studio_parameters()
-            .map_or((false, false), |studio| (studio.occlusion.is_some(), studio.shadows));
-        Places::new(self.spheres, |cells| shadows || occludes && cells.has_near)
+        let cells = Cells::new(self.spheres);
+        let needs_levels = |studio: &Studio| studio.shadows || studio.occlusion.is_some() && cells.has_near;
+        let sorted = if self.settings.studio_parameters().is_some_and(needs_levels) { self.spheres } else { &[] };
+        Places { spheres: self.spheres, levels: Levels::new(&cells, sorted), cells }
     }
 
     /// The tools of drawing: they find spots, and light them.

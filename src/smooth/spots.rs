@@ -44,7 +44,7 @@ pub(super) struct Finder<'a> {
     around: Film,
     /// The fixed places of rays in pixels at edges, counted from the centre.
     offsets: Vec<DVec2>,
-    /// Whether spots have the width of their pixels, which shadows need.
+    /// True if spots have the width of their pixels, which shadows need.
     with_widths: bool,
 }
 

@@ -4,6 +4,7 @@ use glam::{DVec3, Vec3};
 
 use super::Openness;
 use super::far::DIRECTIONS;
+use crate::smooth::caps::Cap;
 use crate::smooth::cells::corners;
 
 /// The part of all directions that belongs to each, divided by that of a half sphere, so that it is the height of a cap.
@@ -46,11 +47,7 @@ impl Openness<'_> {
             let most = near * over * (2.0 * height / PART).min(1.0);
             let a = v * (most / (PART * distance));
             let b = most * ((height.max(0.5 * PART) - 1.0) / PART + 0.5);
-            for k in 0..MOST_ABOVE {
-                let hides = a.x * dx[k] + a.y * dy[k] + a.z * dz[k] + b;
-                let hides = if hides < most { hides } else { most };
-                hidden[k] = if hidden[k] > hides { hidden[k] } else { hides };
-            }
+            Cap { a, b, most }.hide([&dx, &dy, &dz], &mut hidden);
         }
         let (first, parts) = cells.tetrahedron(position, normal);
         let corners = corners(first, parts).map(|(vertex, weight)| (self.far_of(vertex), weight as f32 / 255.0));

@@ -15,8 +15,8 @@ use glam::{IVec3, Vec3};
 #[cfg(feature = "gpu")]
 use super::cells::Cells;
 use super::cells::{corners, index};
+use super::levels::Places;
 use super::lists::{CubeLists, NONE, Needed};
-use super::places::Places;
 use super::spots::Row;
 use crate::parallel;
 use far::{DIRECTIONS, Rays, directions};

@@ -2,7 +2,7 @@
 
 use glam::DVec3;
 
-use crate::smooth::places::Places;
+use crate::smooth::levels::Places;
 use crate::smooth::spots::sphere;
 
 /// The most spheres of a list. The smallest and farthest of more are left out.
