@@ -247,7 +247,8 @@ class Spheres:
         layers
             Names of layers besides colour: alpha, depth, normal, position, albedo, id, samples, variance.
         backend
-            ``"gpu"``, ``"cpu"``, or ``"auto"``: the CPU if there is no adapter.
+            ``"gpu"``, ``"cpu"``, or ``"auto"``: the CPU if there is no adapter, or for random rays if the adapter is
+            software.
         progress
             Whether a line on standard error shows the progress, or a function that is called with numbers from 0 to 1.
         settings

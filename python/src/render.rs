@@ -68,7 +68,10 @@ impl OnDevice {
         backend: Backend,
         stop: &Stop,
     ) -> Outcome<RenderedImage> {
-        let Some(opened) = device::device(backend)? else {
+        // The CPU follows random rays in less time than a software device.
+        let is_random = backend == Backend::Auto && look.settings.is_random(scene, look.view().camera);
+        let Some(opened) = device::device(backend)?.filter(|opened| !(is_random && opened.headless.is_software()))
+        else {
             return on_cpu(scene, look, layers, stop);
         };
         match self.on_gpu(&opened, (scene, version), look, layers, stop) {

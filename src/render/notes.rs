@@ -5,8 +5,8 @@ use std::f64::consts::PI;
 use super::{Integrator, RenderSettings, Studio};
 use crate::image::color::LinearRgb;
 use crate::light::SkyLight;
-use crate::scene::Scene;
 use crate::scene::material::{Material, SurfaceProperties};
+use crate::scene::{Scene, SceneAppearance};
 
 impl RenderSettings {
     /// Notes for the user about possibly unintended results of rendering a scene with these settings, and what to do.
@@ -16,15 +16,12 @@ impl RenderSettings {
         let is_translucent = || !scene.checked_appearance().is_opaque();
         let needs_paths =
             || any(|surface| matches!(surface.material, Material::Conductor { .. } | Material::Dielectric { .. }));
-        let has_chance = |studio: &Studio| {
-            let is_wide = self.lights.iter().any(|light| !light.kind.is_narrow());
-            studio.is_smooth && (self.sampling.denoise || self.ground.is_some() || is_wide || is_translucent())
-        };
+        let has_chance = |studio: &Studio| studio.is_smooth && self.has_chance(scene.checked_appearance());
         let notes = [
             (
                 self.studio_parameters().is_some_and(has_chance),
                 "the studio is not smooth but sampled at random, because a ground, lights with a place or wider than 15 \
-                 degrees, denoising or opacity are asked for; leave these out, or `smooth` in `[studio]`",
+                 degrees, denoising, gloss or opacity are asked for; leave these out, or `smooth` in `[studio]`",
             ),
             (
                 self.is_dark(scene),
@@ -52,6 +49,17 @@ impl RenderSettings {
         });
         let notes = notes.into_iter().filter(|(holds, _)| *holds).map(|(_, note)| note.to_owned());
         notes.chain(deep).collect()
+    }
+
+    /// Whether something other than the camera's lens prevents that a studio is smooth.
+    pub(crate) fn has_chance(&self, appearance: &SceneAppearance) -> bool {
+        let is_glossy =
+            |material: &Material| matches!(material, Material::Lambert { specular, .. } if *specular != 0.0);
+        self.sampling.denoise
+            || self.ground.is_some()
+            || self.lights.iter().any(|light| !light.kind.is_narrow())
+            || !appearance.is_opaque()
+            || appearance.surfaces().iter().any(|surface| is_glossy(&surface.material))
     }
 
     /// Whether the picture has lighting but no light source.

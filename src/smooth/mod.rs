@@ -16,7 +16,6 @@ use crate::image::{Averages, Image, ImageTooLarge, Layer, LayerSet, outline};
 use crate::light::LightKind;
 use crate::parallel;
 use crate::render::{Decision, Picture, Progress, RenderSettings, Studio, Watch};
-use crate::scene::material::Material;
 use crate::scene::{Scene, SceneAppearance};
 use cells::Cells;
 use levels::{Levels, Places};
@@ -37,15 +36,8 @@ const BAND: usize = 1 << 21;
 
 /// Returns what [`RenderSettings::is_smooth`] does, for spheres with this appearance.
 fn is_smooth(settings: &RenderSettings, appearance: &SceneAppearance, camera: &dyn Camera) -> bool {
-    let Some(studio) = settings.studio_parameters() else { return false };
-    let is_glossy = |material: &Material| matches!(material, Material::Lambert { specular, .. } if *specular != 0.0);
-    studio.is_smooth
-        && !settings.sampling.denoise
-        && settings.ground.is_none()
-        && !camera.has_lens()
-        && settings.lights.iter().all(|light| light.kind.is_narrow())
-        && appearance.is_opaque()
-        && !appearance.surfaces().iter().any(|surface| is_glossy(&surface.material))
+    let is_asked = settings.studio_parameters().is_some_and(|studio| studio.is_smooth);
+    is_asked && !camera.has_lens() && !settings.has_chance(appearance)
 }
 
 impl RenderSettings {
@@ -56,6 +48,12 @@ impl RenderSettings {
     #[must_use]
     pub fn is_smooth(&self, scene: &Scene, camera: &dyn Camera) -> bool {
         is_smooth(self, scene.checked_appearance(), camera)
+    }
+
+    /// Returns true if light is sampled at random: the picture has lighting, and is not [smooth](Self::is_smooth).
+    #[must_use]
+    pub fn is_random(&self, scene: &Scene, camera: &dyn Camera) -> bool {
+        !self.integrator.is_primary() && !self.is_smooth(scene, camera)
     }
 }
 

@@ -11,6 +11,7 @@ use crate::input::{Input, Source};
 use crate::render;
 use crate::render::MOST_BY_TILES;
 use crate::render::device::{AdapterReport, WantedAdapter, explained};
+use crate::render::renderer::is_quicker_on_cpu;
 use crate::render::views::views_of;
 use crate::terminal::failure::Failure;
 use crate::terminal::progress::{self, answer};
@@ -125,12 +126,17 @@ pub(crate) fn run(args: &PlanArgs) -> Result<(), Failure> {
         input.notes.push(format!("this is the plan of the largest of {count} bricks, which are rendered one by one"));
         input.scene = Arc::new(bricks.largest_scene(input.color)?);
     }
+    let headless = adapter.open_any()?;
+    if args.adapter.is_empty() && args.accel.accel.is_none() && is_quicker_on_cpu(&headless, &input) {
+        let text =
+            "this is the plan with --backend gpu; without it, `render` follows random rays on the CPU reference here";
+        input.notes.push(text.to_owned());
+    }
     let note = progress::notes(false);
     input.notes.iter().for_each(|text| note(text));
     // `render` adds this layer too.
     let alpha = input.encoding.transparent.then_some(Layer::Alpha);
     let layers = layers.iter().chain(alpha).collect();
-    let headless = adapter.open_any()?;
     progress::stage("planning");
     let choice = args.accel.accel.unwrap_or_default();
     let views = views_of(&input, input.film);

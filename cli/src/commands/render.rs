@@ -10,6 +10,7 @@ use crate::input::Input;
 use crate::output::picture::Outputs;
 use crate::output::scene;
 use crate::proof::{certified, render_certified};
+use crate::render::renderer::renderer;
 use crate::render::views::{Shot, views_of};
 use crate::render::{Job, render_joined, render_views};
 use crate::terminal::failure::Failure;
@@ -88,8 +89,8 @@ fn run_measured(args: &RenderArgs) -> Result<(), Failure> {
             "--stereo applies only to a camera with two eyes; add --separation, or `stereo` to the scene's camera",
         ));
     }
+    let (stop_rule, opened) = (job.stop_rule, renderer(&opened, &input));
     let adapter = opened.adapter();
-    let (stop_rule, opened) = (job.stop_rule, &opened);
     if args.certify {
         let verdict = render_certified::run(&mut input, &job.source.given, stop_rule, outputs, &encoding, opened)?;
         said(quiet, &input, started);

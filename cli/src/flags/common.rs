@@ -55,6 +55,14 @@ pub(crate) struct AdapterArgs {
     pub(crate) limits: Option<Limits>,
 }
 
+#[cfg(feature = "gpu")]
+impl AdapterArgs {
+    /// Whether no flag asks for an adapter.
+    pub(crate) fn is_empty(&self) -> bool {
+        self.adapter.is_none() && self.limits.is_none()
+    }
+}
+
 #[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
 pub(crate) enum Limits {
     /// All limits that the adapter offers
@@ -89,11 +97,11 @@ pub(crate) const STRUCTURES: &[(&str, &str, AccelChoice)] = &[
 
 #[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
 pub(crate) enum Backend {
-    /// An adapter (GPU) if there is one, otherwise the CPU reference
+    /// An adapter (GPU); the CPU reference if there is none, and for random rays if it is software, which takes longer
     Auto,
     /// An adapter (GPU); without one, the job fails
     Gpu,
-    /// The CPU reference, which is slower
+    /// The CPU reference
     Cpu,
 }
 

@@ -14,6 +14,7 @@ use crate::frames::series::{Series, Start, frames, still, turntable};
 use crate::frames::{Pictures, SeriesRequest};
 use crate::output::picture::Outputs;
 use crate::render::device::OpenDevice;
+use crate::render::renderer::renderer;
 use crate::render::stop_rule::StopRule;
 use crate::render::views::{Shot, views_of};
 use crate::render::{Job, render_joined};
@@ -139,11 +140,11 @@ pub(crate) fn run(args: &RenderArgs, wanted: &SeriesRequest, job: Job) -> Result
     let Some(ready) = ready(args, wanted, job, ReadyOptions::default())? else { return Ok(()) };
     let Ready { series, opened, stop_rule, writing, .. } = ready;
     let (count, report) = (series.left.len(), series.input.report.clone());
-    let done = writing.write(wanted, count, opened.adapter(), |pictures| {
+    let done = writing.write(wanted, count, renderer(&opened, &series.input).adapter(), |pictures| {
         series.for_each(|number, input| {
             pictures.begin();
-            let (views, layers) = (&views_of(input, input.film), writing.layers);
-            let image = render_joined(&Shot { input, views, layers, stop_rule, opened: &opened })?;
+            let (views, layers, opened) = (&views_of(input, input.film), writing.layers, renderer(&opened, input));
+            let image = render_joined(&Shot { input, views, layers, stop_rule, opened })?;
             Ok(pictures.send(number, image))
         })
     })?;

@@ -65,4 +65,9 @@ impl Input {
     pub(crate) fn view(&self) -> View<'_> {
         View::new(self.camera.as_ref(), self.film)
     }
+
+    /// Returns true if light of the picture is sampled at random.
+    pub(crate) fn has_random_light(&self) -> bool {
+        self.settings.is_random(&self.scene, self.camera.as_ref())
+    }
 }

@@ -16,6 +16,7 @@ use crate::jobs::manifest::{layer_set, ranges};
 use crate::output::picture::{Outputs, PictureFormat};
 use crate::render::device::OpenDevice;
 use crate::render::finish_joined;
+use crate::render::renderer::renderer;
 use crate::terminal::failure::Failure;
 use crate::terminal::progress::tell;
 use crate::terminal::threads;
@@ -99,7 +100,7 @@ fn write(folder: &Folder, recipe: Recipe, devices: &Devices) -> Result<usize, Fa
         outputs.check_not_inputs(&input.files)?;
         let layers = outputs.layers(&encoding);
         check_layers(folder, layers)?;
-        let image = finish_joined(picture(folder, 0)?, &input.settings, layers, &opened)?;
+        let image = finish_joined(picture(folder, 0)?, &input.settings, layers, renderer(&opened, &input))?;
         outputs.write(&image, &encoding, adapter, None)?;
         return Ok(1);
     };
@@ -115,7 +116,7 @@ fn write(folder: &Folder, recipe: Recipe, devices: &Devices) -> Result<usize, Fa
         for (place, number) in all.iter().enumerate() {
             written.begin();
             let joined = picture(folder, place)?;
-            let image = finish_joined(joined, &input.settings, writing.layers, &opened)?;
+            let image = finish_joined(joined, &input.settings, writing.layers, renderer(&opened, input))?;
             if !written.send(*number, image) {
                 break;
             }

@@ -15,6 +15,7 @@ use crate::jobs::args::{PartArgs, Recipe, check_same};
 use crate::jobs::manifest::{VERSION, parse_list};
 use crate::output::files::replace;
 use crate::render::device::OpenDevice;
+use crate::render::renderer::renderer;
 use crate::render::stop_rule::StopRule;
 use crate::render::views::{Shot, views_of};
 use crate::render::{check_device, render_part};
@@ -96,7 +97,7 @@ impl Work<'_> {
     fn render(&self, unit: usize, input: &mut Input, opened: &OpenDevice) -> Result<(), Failure> {
         let unit_did_not_end = format!("unit {unit} did not end");
         let _deadline = self.limit.map(|limit| Deadline::new(limit, unit_did_not_end));
-        let manifest = &self.folder.manifest;
+        let (manifest, opened) = (&self.folder.manifest, renderer(opened, input));
         let started = Instant::now();
         let (_, (origin, size)) = manifest.unit(unit);
         // The job already has the layers that outlines and denoising need.

@@ -89,17 +89,12 @@ pub(crate) fn judge(
     let checker = Checker::new(&scene).context("the checker cannot be prepared")?;
     let judged = judge_by(&checker, input, encoding, outputs, written, images.clone())?;
     // Where nothing is random, light follows from hits, and a device has none of its own.
-    if let (Outcome::Undecided, true, [image]) = (outcome(&judged), has_random_light(input), &images[..])
+    if let (Outcome::Undecided, true, [image]) = (outcome(&judged), input.has_random_light(), &images[..])
         && let Some(image) = witness(&checker, input, image)?
     {
         return judge_by(&checker, input, encoding, outputs, written, vec![image]);
     }
     Ok(judged)
-}
-
-/// Returns true if light of the picture is sampled at random.
-pub(crate) fn has_random_light(input: &Input) -> bool {
-    !input.settings.integrator.is_primary() && !input.settings.is_smooth(&input.scene, input.view().camera)
 }
 
 /// Judges a picture by the unfinished pictures of the reference for each eye.

@@ -79,6 +79,8 @@ pub(crate) enum OpenDevice {
         choice: AccelChoice,
         /// A warning if the quick self-test failed.
         warning: Option<String>,
+        /// Whether flags ask for an adapter.
+        is_wanted: bool,
     },
 }
 
@@ -100,8 +102,8 @@ impl Device {
             #[cfg(feature = "gpu")]
             Self::Adapter { wanted, choice, or_cpu } => match interrupt::opening(|| wanted.tested())? {
                 Ok((headless, warning)) => {
-                    let (headless, choice) = (Box::new(headless), *choice);
-                    Ok(OpenDevice::Device { headless, choice, warning })
+                    let (headless, choice, is_wanted) = (Box::new(headless), *choice, !or_cpu);
+                    Ok(OpenDevice::Device { headless, choice, warning, is_wanted })
                 }
                 Err(_) if *or_cpu => Ok(OpenDevice::CpuInstead),
                 Err(error) => Err(Failure::Job(error.into())),

@@ -1,8 +1,6 @@
 //! The job of `pinhole render`, and the pictures that a device or the CPU renders for it.
 
 use std::path::Path;
-#[cfg(feature = "gpu")]
-use std::sync::Once;
 
 use anyhow::Context;
 
@@ -16,6 +14,8 @@ use crate::output::picture::Outputs;
 #[cfg(feature = "gpu")]
 use crate::render::device::explained;
 use crate::render::device::{Device, OpenDevice};
+#[cfg(feature = "gpu")]
+use crate::render::renderer::tell_once;
 use crate::render::stop_rule::{StopRule, Watching};
 use crate::render::views::{Shot, extra_bytes_per_pixel, views_of};
 #[cfg(feature = "gpu")]
@@ -37,6 +37,7 @@ use pinhole::render::{Picture, RenderSettings};
 use pinhole_figure::annotate::Annotations;
 
 pub(crate) mod device;
+pub(crate) mod renderer;
 pub(crate) mod stop_rule;
 pub(crate) mod views;
 #[cfg(feature = "gpu")]
@@ -150,13 +151,6 @@ fn joined(mut images: Vec<Image>) -> Result<Image, Failure> {
         return Ok(joined.context("the pictures of both eyes cannot be joined")?);
     }
     Ok(images.pop().context("there is no picture")?)
-}
-
-/// Prints one line if the device is not as expected, however many pictures are rendered.
-#[cfg(feature = "gpu")]
-fn tell_once(text: impl FnOnce() -> String) {
-    static SAID: Once = Once::new();
-    SAID.call_once(|| tell(text()));
 }
 
 /// Renders on the device, and tells the user if it is not the expected one.

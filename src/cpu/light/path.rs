@@ -85,7 +85,9 @@ impl Path<'_> {
             self.miss();
             return None;
         };
-        self.throughput *= (-self.absorption * interaction.distance).exp();
+        if self.absorption != DVec3::ZERO {
+            self.throughput *= (-self.absorption * interaction.distance).exp();
+        }
         let [choice, pass] = self.pair(v, Purpose::Choice).map(unit);
         if pass >= context.opacity(interaction.surface) {
             self.pass(&interaction);

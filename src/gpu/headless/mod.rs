@@ -25,7 +25,7 @@ pub(crate) mod waiting;
 use std::convert::Infallible;
 use std::sync::Arc;
 
-use wgpu::{Adapter, AdapterInfo, CommandEncoder, Device, Queue};
+use wgpu::{Adapter, AdapterInfo, CommandEncoder, Device, DeviceType, Queue};
 
 use crate::accel::AccelChoice;
 use crate::camera::View;
@@ -148,6 +148,12 @@ impl Headless {
     #[must_use]
     pub fn adapter_info(&self) -> &AdapterInfo {
         &self.info
+    }
+
+    /// Returns true if the adapter is software, which runs on the cores of the CPU.
+    #[must_use]
+    pub fn is_software(&self) -> bool {
+        self.info.device_type == DeviceType::Cpu
     }
 
     /// Returns the device, for callers that record their own commands.

@@ -47,7 +47,7 @@ pub(crate) fn recorded(path: &Path, args: &VerifyArgs) -> Result<VerifyJob, Fail
     }
     let is_lit = !input.settings.integrator.is_primary();
     for (flag, is_given) in [("--paths", args.paths.is_some()), ("--tile-seed", args.tile_seed.is_some())] {
-        if is_given && !certified::has_random_light(&input) {
+        if is_given && !input.has_random_light() {
             return Err(Failure::usage(format!(
                 "{flag} needs light that is sampled at random, and this picture has none; remove {flag}"
             )));
@@ -197,8 +197,7 @@ fn judged_light(
     chosen: (u32, Option<u32>),
     choice: AccelChoice,
 ) -> Result<JudgedLight, Failure> {
-    let stages =
-        certified::has_random_light(&input).then(|| certify_light(&headless, &input, chosen, choice)).transpose()?;
+    let stages = input.has_random_light().then(|| certify_light(&headless, &input, chosen, choice)).transpose()?;
     let wanted = input.settings.sampling.samples;
     let samples = wanted.min(PICTURE_SAMPLES);
     input.settings.sampling.samples = samples;
@@ -208,7 +207,7 @@ fn judged_light(
     input.settings = finished.unfinished();
     let outputs = Outputs::unwritten(PictureFormat::Exr);
     let layers = outputs.layers(&input.encoding);
-    let opened = OpenDevice::Device { headless: Box::new(headless), choice, warning: None };
+    let opened = OpenDevice::Device { headless: Box::new(headless), choice, warning: None, is_wanted: true };
     let image = render::render(&input, finished.layers_for(layers), &opened)?;
     let written = FilePicture::of(&image, &input.encoding, &outputs)?;
     let encoding = input.encoding;

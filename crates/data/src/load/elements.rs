@@ -27,11 +27,14 @@ const FALLBACK_RADIUS: f64 = 2.0;
 /// Colour of a species that is not an element or has no tabulated colour: Jmol's deep pink.
 const FALLBACK_COLOR: [u8; 3] = [255, 20, 147];
 
+/// Colour of carbon, of which molecules are mostly made: lighter than Jmol's, and a little bluish beside white hydrogen.
+const CARBON: [u8; 3] = [186, 188, 192];
+
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) struct Appearance {
     /// Van der Waals radius in Å (Alvarez 2013).
     pub(super) radius: f64,
-    /// Jmol's element colour, which extends the convention of Corey, Pauling and Koltun.
+    /// Jmol's element colour, which extends the convention of Corey, Pauling and Koltun, softened.
     pub(super) color: LinearRgb,
     pub(super) is_element: bool,
 }
@@ -42,12 +45,20 @@ pub(super) struct Appearance {
 /// A species that is not an element gets the radius 2 Å and the colour deep pink.
 pub(super) fn appearance(species: &str) -> Appearance {
     let element = element(species);
-    let color = element.and_then(|e| e.jmol_color()).map_or(FALLBACK_COLOR, |c| [c.r, c.g, c.b]);
+    let color = match element {
+        Some(Element::C) => CARBON,
+        _ => element.and_then(|e| e.jmol_color()).map_or(FALLBACK_COLOR, |c| softened([c.r, c.g, c.b])),
+    };
     let radius = element
         .and_then(|e| VAN_DER_WAALS.get(e.atomic_number() as usize - 1).copied())
         .filter(|radius| *radius > 0.0)
         .unwrap_or(FALLBACK_RADIUS);
     Appearance { radius, color: LinearRgb::from_srgb8(color), is_element: element.is_some() }
+}
+
+/// Mixes a quarter of a light grey into a colour: pure red and blue leave no room for shading, and swallow ink.
+fn softened(color: [u8; 3]) -> [u8; 3] {
+    color.map(|c| ((3 * u32::from(c) + 200) / 4) as u8)
 }
 
 /// Returns the element of a species, which is written in any of these ways.

@@ -323,7 +323,7 @@ fn gsd_types_that_are_elements_have_radii_and_colors() {
     };
     let water = gsd_frame(&atoms(b"O\0H\0", 2), 0);
     assert_eq!(spheres(&water).iter().map(|s| s[3]).collect::<Vec<_>>(), [1.5, 1.2]);
-    assert_eq!(water.colors.unwrap()[0].to_srgb8(), [255, 13, 13]);
+    assert_eq!(water.colors.unwrap()[0].to_srgb8(), [241, 59, 59]);
     assert!(water.notes[0].starts_with("there are no diameters; the types are chemical elements"));
     // B is the symbol of boron, but A is not an element.
     let beads = gsd_frame(&atoms(b"A\0B\0", 2), 0);

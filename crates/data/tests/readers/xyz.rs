@@ -24,7 +24,7 @@ fn a_molecule() {
     assert_eq!(spheres.len(), 3);
     assert_eq!(spheres[1].center, [0.76, 0.0, -0.5]);
     assert_eq!(spheres[0].radius, 1.5);
-    assert_eq!(spheres[0].color, LinearRgb::from_srgb8([255, 13, 13]));
+    assert_eq!(spheres[0].color, LinearRgb::from_srgb8([241, 59, 59]));
     assert_eq!(loaded.notes, [""; 0]);
     let species = loaded.labels("species").unwrap();
     assert_eq!(species.names, ["O", "H"]);
@@ -123,7 +123,7 @@ fn columns_are_used_or_noted() {
     }
     assert_eq!(one("color:R:4", "1 0 0.2 0.5").opacities, Some(vec![0.5]));
     let odd = one("color:R:3", "-1 0 0");
-    assert_eq!(srgb(&odd), [255, 13, 13]);
+    assert_eq!(srgb(&odd), [241, 59, 59]);
     assert_eq!(numbers(&odd, "color.x"), [-1.0]);
     // Missing values are kept in columns that spheres do not need.
     assert!(numbers(&one("q:R:1", "nan"), "q")[0].is_nan());

@@ -1,0 +1,48 @@
+//! What renders a picture: the device that is open, or the CPU reference in its place.
+
+#[cfg(feature = "gpu")]
+use std::sync::Once;
+
+use crate::input::Input;
+use crate::render::device::OpenDevice;
+#[cfg(feature = "gpu")]
+use crate::terminal::progress::tell;
+#[cfg(feature = "gpu")]
+use pinhole::gpu::Headless;
+
+#[cfg(feature = "gpu")]
+static CPU: OpenDevice = OpenDevice::Cpu;
+
+/// The renderer of a picture: the CPU reference in the place of a software device, which takes longer, if light is
+/// sampled at random and no flag asks for an adapter.
+#[cfg_attr(not(feature = "gpu"), expect(unused_variables, reason = "there is no device"))]
+pub(crate) fn renderer<'a>(opened: &'a OpenDevice, input: &Input) -> &'a OpenDevice {
+    match opened {
+        #[cfg(feature = "gpu")]
+        OpenDevice::Device { headless, is_wanted: false, .. } if is_quicker_on_cpu(headless, input) => {
+            let name = &headless.adapter_info().name;
+            tell_once(|| {
+                format!(
+                    "note: the CPU reference follows random rays in less time than {name}, so it does; or add \
+                     --backend gpu"
+                )
+            });
+            &CPU
+        }
+        _ => opened,
+    }
+}
+
+/// Whether the CPU reference takes less time for a picture than a device: if light is sampled at random, and the device
+/// is software. On two cores it took 0.2 to 0.8 of the time of lavapipe.
+#[cfg(feature = "gpu")]
+pub(crate) fn is_quicker_on_cpu(headless: &Headless, input: &Input) -> bool {
+    headless.is_software() && input.bricks.is_none() && input.has_random_light()
+}
+
+/// Prints one line if the device is not as expected, however many pictures are rendered.
+#[cfg(feature = "gpu")]
+pub(super) fn tell_once(text: impl FnOnce() -> String) {
+    static SAID: Once = Once::new();
+    SAID.call_once(|| tell(text()));
+}
