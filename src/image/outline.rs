@@ -115,7 +115,7 @@ pub(crate) fn coverage_by(
 }
 
 /// The strength of the line between two pixels, from 0 to 1. A line fades in as jumps in depth grow from the smallest
-/// one to half more, so that it is not dashed where jumps are about that large.
+/// one to 3.5 times as much, so that it is strong between things that are far apart, and faint within them.
 fn strength(a: Spot, b: Spot, outline: &Outline) -> f32 {
     if a.id == b.id {
         return 0.0;
@@ -128,7 +128,7 @@ fn strength(a: Spot, b: Spot, outline: &Outline) -> f32 {
         return 1.0;
     }
     let (jump, least) = ((a.depth - b.depth).abs(), outline.depth * a.depth.min(b.depth));
-    if jump > least { ((jump - least) / (0.5 * least)).clamp(0.0, 1.0) } else { 0.0 }
+    if jump > least { ((jump - least) / (2.5 * least)).clamp(0.0, 1.0) } else { 0.0 }
 }
 
 /// The number of smoothing passes of the curves. In each pass, a point moves towards the middle of its neighbours, so

@@ -21,6 +21,7 @@ mod duplicates;
 mod error;
 mod frame;
 pub mod material;
+mod shared;
 pub mod sphere;
 pub mod sphere_array;
 mod update;
@@ -34,6 +35,7 @@ pub(crate) use duplicates::Duplicates;
 pub use error::SceneError;
 pub use frame::SceneExtent;
 pub(crate) use frame::bounds_in_frame;
+pub(crate) use shared::SharedSpheres;
 pub use update::{Centers, NewColors, SceneUpdate, UpdateError};
 
 /// Spheres in the frame of the scene, which is an f64 origin with f32 offsets, and their appearance.
@@ -45,7 +47,7 @@ pub use update::{Centers, NewColors, SceneUpdate, UpdateError};
 pub struct Scene {
     origin: DVec3,
     /// Shared with a device's copy, which draws smooth pictures from them.
-    spheres: Arc<Vec<[f32; 4]>>,
+    spheres: Arc<SharedSpheres>,
     /// Shared with users that need nothing else of the scene.
     appearance: Arc<SceneAppearance>,
     bounds: Option<Bounds>,
@@ -135,7 +137,7 @@ impl Scene {
     /// A scene from an origin, spheres, appearance and bounds that have been checked.
     fn in_frame(origin: DVec3, spheres: Vec<[f32; 4]>, appearance: Appearance, bounds: Option<Bounds>) -> Self {
         let appearance = Arc::new(SceneAppearance::new(appearance, spheres.len()));
-        Self { origin, spheres: Arc::new(spheres), appearance, bounds, added: 0, whole: None }
+        Self { origin, spheres: Arc::new(SharedSpheres::new(spheres)), appearance, bounds, added: 0, whole: None }
     }
 
     /// The spheres, all with these surface properties.
@@ -211,8 +213,7 @@ impl Scene {
     }
 
     /// The spheres, which stay the same if the scene is updated.
-    #[cfg(feature = "gpu")]
-    pub(crate) fn shared_spheres(&self) -> &Arc<Vec<[f32; 4]>> {
+    pub(crate) fn shared_spheres(&self) -> &Arc<SharedSpheres> {
         &self.spheres
     }
 

@@ -237,7 +237,7 @@ impl Scene {
         update.check_colors(self, range.start)?;
         if update.changes_shape() {
             let moved: Vec<_> = range.clone().map(|index| update.sphere(self, index).1).collect();
-            Arc::make_mut(&mut self.spheres)[range.clone()].copy_from_slice(&moved);
+            Arc::make_mut(&mut self.spheres).edit()[range.clone()].copy_from_slice(&moved);
             self.bounds = frame::bounds_in_frame(self.origin, &self.spheres);
         }
         if let Some(new) = &update.colors {

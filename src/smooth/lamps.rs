@@ -85,7 +85,7 @@ impl Lamp {
 
     /// Lists the spheres in the way to the lamp from the cubes of visible points.
     pub(super) fn see(&mut self, places: &Places<'_>, cubes: &Needed) {
-        let cells = &places.cells;
+        let cells = places.cells;
         let (axis, slope) = (self.toward, self.slope);
         self.lists.complete(cubes, |cube| {
             let cone = Cone { start: cells.middle(cube), axis, radius: 1.74 * cells.side, slope };
@@ -110,7 +110,7 @@ impl Lamp {
             });
             if is_open && listed.len() == LISTED {
                 let mut left = MOST;
-                places.levels.along(&places.cells, places.spheres, &cone, |id| {
+                places.levels.along(places.cells, places.spheres, &cone, |id| {
                     let (center, radius) = sphere(places.spheres, id);
                     left -= 1;
                     sight.meets(id, center, radius) && left > 0

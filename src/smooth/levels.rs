@@ -13,11 +13,11 @@ use crate::parallel;
 const LARGEST: f64 = 1.9;
 
 /// The spheres of a scene in cells and, as far as light needs them one by one, by size and place.
-#[derive(Debug)]
+#[derive(Clone, Copy, Debug)]
 pub(super) struct Places<'a> {
     pub(super) spheres: &'a [[f32; 4]],
-    pub(super) cells: Cells,
-    pub(super) levels: Levels,
+    pub(super) cells: &'a Cells,
+    pub(super) levels: &'a Levels,
 }
 
 /// The levels of spheres of similar size, from small ones on.

@@ -9,10 +9,11 @@ use super::levels::Places;
 use super::lists::Needed;
 use super::openness::Openness;
 use super::spots::{Row, Spot};
+use super::tables::Tables;
 use crate::camera::Camera;
 use crate::geometry::math::wide;
 use crate::light::LightKind;
-use crate::render::{Occlusion, RenderSettings, Studio};
+use crate::render::{RenderSettings, Studio};
 use crate::scene::SceneAppearance;
 use crate::scene::material::Material;
 
@@ -22,8 +23,8 @@ pub(super) struct Lit<'a> {
     studio: &'a Studio,
     /// Lamps, or none for lights at the eye, and what they make a white surface reflect that faces them.
     lamps: Vec<(Option<Lamp>, DVec3)>,
-    openness: Option<Openness<'a>>,
-    places: &'a Places<'a>,
+    openness: Option<&'a mut Openness>,
+    places: Places<'a>,
     /// The colour where there is no sphere.
     pub(super) background: DVec3,
 }
@@ -33,32 +34,32 @@ impl<'a> Lit<'a> {
         appearance: &'a SceneAppearance,
         camera: &dyn Camera,
         settings: &'a RenderSettings,
-        places: &'a Places<'a>,
+        tables: &'a mut Tables,
+        spheres: &'a [[f32; 4]],
     ) -> Option<Self> {
+        let (places, openness) = tables.parts(spheres);
         let studio = settings.studio_parameters()?;
         let vectors = camera.vectors();
         let lamps = settings.lights.iter().filter_map(|light| match light.in_view(&vectors)? {
             LightKind::Head { strength } => Some((None, wide(strength.to_array()))),
             LightKind::Directional { toward, strength, angular_radius } => {
-                Some((Some(Lamp::new(toward, angular_radius, places)), wide(strength.to_array())))
+                Some((Some(Lamp::new(toward, angular_radius, &places)), wide(strength.to_array())))
             }
             LightKind::Point { .. } | LightKind::Sphere { .. } => None,
         });
         let lamps = lamps.collect();
-        let radius = |occlusion: &Occlusion| occlusion.radius.unwrap_or(f64::INFINITY);
-        let openness = studio.occlusion.as_ref().map(|occlusion| Openness::new(places, radius(occlusion)));
         let background = if settings.is_transparent { DVec3::ZERO } else { wide(settings.background.to_array()) };
         Some(Self { appearance, studio, lamps, openness, places, background })
     }
 
     /// Prepares for the light of some spots.
     pub(super) fn see(&mut self, rows: &[Row]) {
-        let cubes = Needed::cubes(self.places, rows);
+        let cubes = Needed::cubes(&self.places, rows);
         if let Some(openness) = &mut self.openness {
-            openness.see(rows, &cubes);
+            openness.see(&self.places, rows, &cubes);
         }
         if self.studio.shadows {
-            self.lamps.iter_mut().flat_map(|(lamp, _)| lamp).for_each(|lamp| lamp.see(self.places, &cubes));
+            self.lamps.iter_mut().flat_map(|(lamp, _)| lamp).for_each(|lamp| lamp.see(&self.places, &cubes));
         }
     }
 
@@ -81,12 +82,12 @@ impl<'a> Lit<'a> {
             _ => {
                 let mut light = wide(self.studio.ambient.to_array());
                 if let (Some(openness), true) = (&self.openness, light != DVec3::ZERO) {
-                    light *= f64::from(openness.at(spot.position, spot.normal));
+                    light *= f64::from(openness.at(self.places.cells, spot.position, spot.normal));
                 }
                 for (lamp, strength) in &self.lamps {
                     light += strength
                         * match lamp {
-                            Some(lamp) => lamp.light(spot, self.studio.shadows.then_some(self.places)),
+                            Some(lamp) => lamp.light(spot, self.studio.shadows.then_some(&self.places)),
                             None => spot.normal.dot(spot.out).max(0.0),
                         };
                 }

@@ -15,12 +15,15 @@ use crate::image::{Averages, Image, ImageTooLarge, Layer, LayerSet, outline};
 #[cfg(feature = "gpu")]
 use crate::light::LightKind;
 use crate::parallel;
-use crate::render::{Decision, Picture, Progress, RenderSettings, Studio, Watch};
-use crate::scene::{Scene, SceneAppearance};
+use crate::render::{Decision, Picture, Progress, RenderSettings, Watch};
+use crate::scene::{Scene, SceneAppearance, SharedSpheres};
+#[cfg(feature = "gpu")]
 use cells::Cells;
-use levels::{Levels, Places};
+#[cfg(feature = "gpu")]
+use levels::Levels;
 use lit::Lit;
 use spots::{Finder, Row, Spot, rays, with_neighbors};
+use tables::Tables;
 
 mod caps;
 mod cells;
@@ -30,6 +33,7 @@ mod lists;
 mod lit;
 mod openness;
 mod spots;
+mod tables;
 
 /// The number of pixels that are drawn together, which bounds the memory for [`Spot`]s.
 const BAND: usize = 1 << 21;
@@ -60,7 +64,7 @@ impl RenderSettings {
 /// A smooth picture, before it is drawn.
 #[derive(Clone, Copy)]
 pub(crate) struct SmoothPicture<'a> {
-    spheres: &'a [[f32; 4]],
+    spheres: &'a SharedSpheres,
     appearance: &'a SceneAppearance,
     /// Origin of the spheres' frame, in world space.
     origin: DVec3,
@@ -71,7 +75,7 @@ pub(crate) struct SmoothPicture<'a> {
 impl<'a> SmoothPicture<'a> {
     /// `None` if the picture is not smooth.
     pub(crate) fn new(
-        (spheres, origin): (&'a [[f32; 4]], DVec3),
+        (spheres, origin): (&'a SharedSpheres, DVec3),
         appearance: &'a SceneAppearance,
         view: &View<'a>,
         settings: &'a RenderSettings,
@@ -82,7 +86,7 @@ impl<'a> SmoothPicture<'a> {
 
     /// The picture of a scene; `None` if it is not smooth.
     pub(crate) fn of(scene: &'a Scene, view: &View<'a>, settings: &'a RenderSettings) -> Option<Self> {
-        Self::new((scene.spheres(), scene.origin()), scene.checked_appearance(), view, settings)
+        Self::new((scene.shared_spheres(), scene.origin()), scene.checked_appearance(), view, settings)
     }
 
     /// The view of the ids from which the picture follows: for a part of a film, with the pixels around it.
@@ -143,8 +147,8 @@ impl<'a> SmoothPicture<'a> {
 
     /// The light of some pixels, given with the ids of three rows of three pixels, of which they are the middle.
     pub(crate) fn pixels(&self, pixels: &[([u32; 2], [u32; 9])]) -> Vec<Averages> {
-        let places = self.places();
-        let Some((finder, mut lit)) = self.tools(&places) else { return Vec::new() };
+        let mut tables = self.tables();
+        let Some((finder, mut lit)) = self.tools(&mut tables) else { return Vec::new() };
         let spots = parallel::map(pixels.len(), |at| {
             let (pixel, ids) = pixels[at];
             let mut found = Row::default();
@@ -152,28 +156,27 @@ impl<'a> SmoothPicture<'a> {
             found
         });
         lit.see(&spots);
-        parallel::map(pixels.len(), |at| self.averages(&lit, &spots[at].all))
+        let averages = parallel::map(pixels.len(), |at| self.averages(&lit, &spots[at].all));
+        self.spheres.keep(tables);
+        averages
     }
 
-    /// The places of spheres, as far as light needs them.
-    fn places(&self) -> Places<'a> {
-        let cells = Cells::new(self.spheres);
-        let needs_levels = |studio: &Studio| studio.shadows || studio.occlusion.is_some() && cells.has_near;
-        let sorted = if self.settings.studio_parameters().is_some_and(needs_levels) { self.spheres } else { &[] };
-        Places { spheres: self.spheres, levels: Levels::new(&cells, sorted), cells }
+    /// The tables of an earlier picture of the same spheres, or new ones.
+    fn tables(&self) -> Tables {
+        Tables::take(self.spheres, self.settings.studio_parameters())
     }
 
     /// The tools of drawing: they find spots, and light them.
-    fn tools<'b>(&'b self, places: &'b Places<'b>) -> Option<(Finder<'a>, Lit<'b>)> {
+    fn tools<'b>(&'b self, tables: &'b mut Tables) -> Option<(Finder<'a>, Lit<'b>)> {
         let finder = Finder::new(self.spheres, self.origin, &self.view, self.settings);
-        Some((finder, Lit::new(self.appearance, self.view.camera, self.settings, places)?))
+        Some((finder, Lit::new(self.appearance, self.view.camera, self.settings, tables, self.spheres)?))
     }
 
     /// Writes colour, opacity, albedo and samples of all pixels. `go_on` learns the completed part several times, and stops
     /// the work by false. Returns the sum of all opacities, and `Picture::crowded`.
     fn draw_from(&self, ids: &[u32], image: &mut Image, mut go_on: impl FnMut(f64) -> bool) -> Option<(f64, usize)> {
-        let places = self.places();
-        let (finder, mut lit) = self.tools(&places)?;
+        let mut tables = self.tables();
+        let (finder, mut lit) = self.tools(&mut tables)?;
         let [width, height] = [image.width(), image.height()].map(|side| side as usize);
         let mut opacity = 0.0;
         for rows in parallel::ranges(height, (BAND / width).max(1)) {
@@ -200,7 +203,9 @@ impl<'a> SmoothPicture<'a> {
                 return None;
             }
         }
-        Some((opacity, lit.crowded()))
+        let crowded = lit.crowded();
+        self.spheres.keep(tables);
+        Some((opacity, crowded))
     }
 
     /// The averages over the spots of a pixel.

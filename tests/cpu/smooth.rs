@@ -7,6 +7,7 @@ use pinhole::glam::DVec3;
 use pinhole::light::{Light, LightFrame, LightKind};
 use pinhole::render::{Occlusion, Outline, Sampling, Studio};
 use pinhole::scene::material::{Material, SurfaceProperties};
+use pinhole::scene::{Centers, SceneUpdate};
 use pinhole::verify::finished::{FinishedRequest, PixelVerdict};
 use pinhole::verify::written::{Samples, WrittenPicture};
 use pinhole::verify::{Checker, Outcome};
@@ -227,6 +228,34 @@ fn openness_belongs_to_a_surface_and_not_to_a_camera() {
         compared += usize::from(*id != pinhole::image::NO_ID);
     }
     assert!(compared > 100, "{compared}");
+}
+
+/// Pictures of a scene that was drawn before, with other settings, from elsewhere, and with other spheres, are those of a
+/// new scene.
+#[test]
+fn what_earlier_pictures_left_changes_none() {
+    let mut all = spheres::random(300, 12, |_| 0.07);
+    let mut scene = white(&all);
+    let (front, film) = (camera(&scene), Film::new(24, 18).unwrap());
+    let middle = scene.bounds_to_frame().center();
+    let above = Pose::looking_at(middle + 4.0 * DVec3::Y, middle, DVec3::X).unwrap();
+    let above = OrthographicCamera::new(above, [0.8, 0.6]).unwrap();
+    let views: [&dyn Camera; 2] = [&front, &above];
+    let settings = [ambient(None, 4), ambient(Some(0.2), 4), lamp(DVec3::Y, 0.1, 4)];
+    let all_as_new = |scene: &Scene, all: &Spheres| {
+        for (k, (view, look)) in [(0, 0), (1, 0), (1, 1), (0, 1), (0, 2), (1, 2), (0, 0)].into_iter().enumerate() {
+            let of = |scene: &Scene| picture(scene, views[view], film, &settings[look]).to_le_bytes();
+            assert!(of(scene) == of(&white(all)), "picture {k}");
+        }
+    };
+    all_as_new(&scene, &all);
+    for sphere in &mut all[10..20] {
+        sphere[1] += 0.1;
+    }
+    let centers: Vec<_> = all[10..20].iter().map(|[x, y, z, _]| [*x, *y, *z]).collect();
+    let update = SceneUpdate { first: 10, centers: Some(Centers::F32(&centers)), ..SceneUpdate::default() };
+    scene.apply(&update).unwrap();
+    all_as_new(&scene, &all);
 }
 
 #[test]

@@ -9,7 +9,7 @@ use glam::DVec3;
 use crate::gpu::shader::Constant;
 use crate::image::color::LinearRgb;
 use crate::light::emitters::{EmissiveSphere, Emitters};
-use crate::scene::{Duplicates, Scene, SceneAppearance};
+use crate::scene::{Duplicates, Scene, SceneAppearance, SharedSpheres};
 
 /// Palette, surfaces and emissive spheres of a scene.
 #[derive(Debug)]
@@ -18,7 +18,7 @@ pub(crate) struct SceneSummary {
     pub(crate) origin: DVec3,
     pub(crate) appearance: Arc<SceneAppearance>,
     /// The spheres, from which smooth pictures are drawn.
-    pub(crate) spheres: Arc<Vec<[f32; 4]>>,
+    pub(crate) spheres: Arc<SharedSpheres>,
     pub(crate) emitters: Emitters,
     /// The spheres of `emitters`, in the same order.
     pub(crate) emissive: Vec<EmissiveSphere>,
@@ -44,7 +44,7 @@ impl SceneSummary {
         Self {
             origin: scene.origin(),
             appearance: Arc::new(SceneAppearance::new(LinearRgb::WHITE.into(), 0)),
-            spheres: Arc::default(),
+            spheres: Arc::clone(scene.shared_spheres()),
             emitters: Emitters::default(),
             emissive: Vec::new(),
         }

@@ -5,15 +5,14 @@ use glam::{DVec3, Vec3};
 use super::Openness;
 use super::far::DIRECTIONS;
 use crate::smooth::caps::Cap;
-use crate::smooth::cells::corners;
+use crate::smooth::cells::{Cells, corners};
 
 /// The part of all directions that belongs to each, divided by that of a half sphere, so that it is the height of a cap.
 const PART: f32 = 4.0 / DIRECTIONS as f32;
 
-impl Openness<'_> {
+impl Openness {
     /// The share of ambient light that reaches a point of a surface, whose tables are complete.
-    pub(in crate::smooth) fn at(&self, position: DVec3, normal: DVec3) -> f32 {
-        let cells = &self.places.cells;
+    pub(in crate::smooth) fn at(&self, cells: &Cells, position: DVec3, normal: DVec3) -> f32 {
         let (side, n) = (cells.side as f32, normal.as_vec3());
         // The directions above the horizon, with the cosines of their angles to the normal. Others count nothing.
         let (mut above, mut count) = (Above::default(), 0);
@@ -50,7 +49,7 @@ impl Openness<'_> {
             Cap { a, b, most }.hide([&dx, &dy, &dz], &mut hidden);
         }
         let (first, parts) = cells.tetrahedron(position, normal);
-        let corners = corners(first, parts).map(|(vertex, weight)| (self.far_of(vertex), weight as f32 / 255.0));
+        let corners = corners(first, parts).map(|(vertex, weight)| (self.far_of(cells, vertex), weight as f32 / 255.0));
         let (mut open, mut all) = (0.0, 0.0);
         for k in 0..count {
             let far = corners.iter().map(|(shares, weight)| weight * f32::from(shares[number[k]])).sum::<f32>();

@@ -12,9 +12,7 @@ use std::sync::atomic::{AtomicUsize, Ordering};
 
 use glam::{IVec3, Vec3};
 
-#[cfg(feature = "gpu")]
-use super::cells::Cells;
-use super::cells::{corners, index};
+use super::cells::{Cells, corners, index};
 use super::levels::Places;
 use super::lists::{CubeLists, NONE, Needed};
 use super::spots::Row;
@@ -27,8 +25,7 @@ mod near;
 
 /// The tables from which the openness of points is computed.
 #[derive(Debug)]
-pub(super) struct Openness<'a> {
-    places: &'a Places<'a>,
+pub(super) struct Openness {
     /// For each cell the number of its sample points, of eight, that are inside spheres.
     filled: Vec<u8>,
     rays: Rays,
@@ -45,14 +42,13 @@ pub(super) struct Openness<'a> {
     pub(super) crowded: AtomicUsize,
 }
 
-impl<'a> Openness<'a> {
+impl Openness {
     /// Counts the sample points of cells inside spheres. `radius` is the distance up to which spheres occlude.
-    pub(super) fn new(places: &'a Places<'a>, radius: f64) -> Self {
-        let cells = &places.cells;
+    pub(super) fn new(places: &Places<'_>, radius: f64) -> Self {
+        let cells = places.cells;
         let near_end = radius.min(2.0 * cells.side) as f32;
         let cubes = cells.cube_counts().into_iter().product();
         Self {
-            places,
             filled: cells.fill(places.spheres),
             rays: Rays::new(cells, radius),
             near_end,
@@ -73,8 +69,8 @@ impl<'a> Openness<'a> {
     }
 
     /// Completes the tables for some spots and their cubes.
-    pub(super) fn see(&mut self, rows: &[Row], cubes: &Needed) {
-        let cells = &self.places.cells;
+    pub(super) fn see(&mut self, places: &Places<'_>, rows: &[Row], cubes: &Needed) {
+        let cells = places.cells;
         let vertices = Needed::none(self.vertices.len());
         parallel::for_each(rows.iter().collect(), |row: &Row| {
             for spot in &row.all {
@@ -88,14 +84,14 @@ impl<'a> Openness<'a> {
         self.far.extend(parallel::map(new.len(), |k| self.rays.from(cells, &self.filled, cells.vertex(new[k]))));
         let crowded = &self.crowded;
         self.near.complete(cubes, |cube| {
-            let (list, is_cut) = near::list(self.places, cube);
+            let (list, is_cut) = near::list(places, cube);
             crowded.fetch_add(usize::from(is_cut), Ordering::Relaxed);
             list
         });
     }
 
     /// The shares of light, of 255, that pass along each direction from a vertex.
-    fn far_of(&self, vertex: IVec3) -> &[u8; DIRECTIONS] {
-        &self.far[self.vertices[index(self.places.cells.cube_counts(), vertex) as usize] as usize]
+    fn far_of(&self, cells: &Cells, vertex: IVec3) -> &[u8; DIRECTIONS] {
+        &self.far[self.vertices[index(cells.cube_counts(), vertex) as usize] as usize]
     }
 }

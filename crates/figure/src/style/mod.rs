@@ -162,7 +162,7 @@ fn fit_outline(
         return;
     }
     if !given.outline_depth {
-        let jump = if style == Style::Illustration { 0.35 } else { 0.7 } * radius;
+        let jump = if matches!(style, Style::Flat | Style::Illustration) { 0.35 } else { 0.7 } * radius;
         let distance = (middle - view.camera.vectors().origin).length();
         // Outlines compare a jump with the distance to the camera.
         outline.depth = (jump / distance.max(jump)).clamp(0.0, 1.0) as f32;

@@ -1,0 +1,50 @@
+//! The tables from which light is computed and that depend on spheres and settings alone, so that they are kept for the
+//! next picture of the same spheres.
+
+use super::cells::Cells;
+use super::levels::{Levels, Places};
+use super::openness::Openness;
+use crate::render::{Occlusion, Studio};
+use crate::scene::SharedSpheres;
+
+#[derive(Debug)]
+pub(super) struct Tables {
+    wanted: Wanted,
+    cells: Cells,
+    levels: Levels,
+    openness: Option<Openness>,
+}
+
+/// The settings on which tables depend.
+#[derive(Clone, Copy, Debug, PartialEq)]
+struct Wanted {
+    shadows: bool,
+    /// How far spheres occlude; `None` without occlusion.
+    radius: Option<f64>,
+}
+
+impl Tables {
+    /// Takes the tables that an earlier picture left, or begins new ones.
+    pub(super) fn take(spheres: &SharedSpheres, studio: Option<&Studio>) -> Self {
+        let radius = |occlusion: &Occlusion| occlusion.radius.unwrap_or(f64::INFINITY);
+        let wanted = Wanted {
+            shadows: studio.is_some_and(|studio| studio.shadows),
+            radius: studio.and_then(|studio| studio.occlusion.as_ref()).map(radius),
+        };
+        if let Some(kept) = spheres.take::<Self>().filter(|kept| kept.wanted == wanted) {
+            return kept;
+        }
+        let cells = Cells::new(spheres);
+        let needs_levels = wanted.shadows || wanted.radius.is_some() && cells.has_near;
+        let levels = Levels::new(&cells, if needs_levels { spheres } else { &[] });
+        let places = Places { spheres, cells: &cells, levels: &levels };
+        let openness = wanted.radius.map(|radius| Openness::new(&places, radius));
+        Self { wanted, cells, levels, openness }
+    }
+
+    /// The places of the spheres from which the tables were made, and the openness of points.
+    pub(super) fn parts<'a>(&'a mut self, spheres: &'a [[f32; 4]]) -> (Places<'a>, Option<&'a mut Openness>) {
+        let Self { cells, levels, openness, .. } = self;
+        (Places { spheres, cells, levels }, openness.as_mut())
+    }
+}
