@@ -89,7 +89,7 @@ fn run_measured(args: &RenderArgs) -> Result<(), Failure> {
             "--stereo applies only to a camera with two eyes; add --separation, or `stereo` to the scene's camera",
         ));
     }
-    let (stop_rule, opened) = (job.stop_rule, renderer(&opened, &input));
+    let (stop_rule, opened) = (job.stop_rule, renderer(&opened, &input, quiet));
     let adapter = opened.adapter();
     if args.certify {
         let verdict = render_certified::run(&mut input, &job.source.given, stop_rule, outputs, &encoding, opened)?;

@@ -139,16 +139,17 @@ pub(crate) fn run(args: &RenderArgs, wanted: &SeriesRequest, job: Job) -> Result
     let started = Instant::now();
     let Some(ready) = ready(args, wanted, job, ReadyOptions::default())? else { return Ok(()) };
     let Ready { series, opened, stop_rule, writing, .. } = ready;
-    let (count, report) = (series.left.len(), series.input.report.clone());
-    let done = writing.write(wanted, count, renderer(&opened, &series.input).adapter(), |pictures| {
+    let (count, report, quiet) = (series.left.len(), series.input.report.clone(), args.report.quiet);
+    let done = writing.write(wanted, count, renderer(&opened, &series.input, quiet).adapter(), |pictures| {
         series.for_each(|number, input| {
             pictures.begin();
-            let (views, layers, opened) = (&views_of(input, input.film), writing.layers, renderer(&opened, input));
+            let (views, layers, opened) =
+                (&views_of(input, input.film), writing.layers, renderer(&opened, input, quiet));
             let image = render_joined(&Shot { input, views, layers, stop_rule, opened })?;
             Ok(pictures.send(number, image))
         })
     })?;
-    if !args.report.quiet {
+    if !quiet {
         tell(report.line_of(done, started.elapsed()));
     }
     Ok(())

@@ -100,7 +100,7 @@ fn write(folder: &Folder, recipe: Recipe, devices: &Devices) -> Result<usize, Fa
         outputs.check_not_inputs(&input.files)?;
         let layers = outputs.layers(&encoding);
         check_layers(folder, layers)?;
-        let image = finish_joined(picture(folder, 0)?, &input.settings, layers, renderer(&opened, &input))?;
+        let image = finish_joined(picture(folder, 0)?, &input.settings, layers, renderer(&opened, &input, true))?;
         outputs.write(&image, &encoding, adapter, None)?;
         return Ok(1);
     };
@@ -116,7 +116,7 @@ fn write(folder: &Folder, recipe: Recipe, devices: &Devices) -> Result<usize, Fa
         for (place, number) in all.iter().enumerate() {
             written.begin();
             let joined = picture(folder, place)?;
-            let image = finish_joined(joined, &input.settings, writing.layers, renderer(&opened, input))?;
+            let image = finish_joined(joined, &input.settings, writing.layers, renderer(&opened, input, true))?;
             if !written.send(*number, image) {
                 break;
             }

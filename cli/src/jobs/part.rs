@@ -97,7 +97,7 @@ impl Work<'_> {
     fn render(&self, unit: usize, input: &mut Input, opened: &OpenDevice) -> Result<(), Failure> {
         let unit_did_not_end = format!("unit {unit} did not end");
         let _deadline = self.limit.map(|limit| Deadline::new(limit, unit_did_not_end));
-        let (manifest, opened) = (&self.folder.manifest, renderer(opened, input));
+        let (manifest, opened) = (&self.folder.manifest, renderer(opened, input, self.quiet));
         let started = Instant::now();
         let (_, (origin, size)) = manifest.unit(unit);
         // The job already has the layers that outlines and denoising need.

@@ -14,19 +14,18 @@ use pinhole::gpu::Headless;
 static CPU: OpenDevice = OpenDevice::Cpu;
 
 /// The renderer of a picture: the CPU reference in the place of a software device, which takes longer, if light is
-/// sampled at random and no flag asks for an adapter.
+/// sampled at random and no flag asks for an adapter. Unless `quiet`, a note says so.
 #[cfg_attr(not(feature = "gpu"), expect(unused_variables, reason = "there is no device"))]
-pub(crate) fn renderer<'a>(opened: &'a OpenDevice, input: &Input) -> &'a OpenDevice {
+pub(crate) fn renderer<'a>(opened: &'a OpenDevice, input: &Input, quiet: bool) -> &'a OpenDevice {
     match opened {
         #[cfg(feature = "gpu")]
         OpenDevice::Device { headless, is_wanted: false, .. } if is_quicker_on_cpu(headless, input) => {
             let name = &headless.adapter_info().name;
-            tell_once(|| {
-                format!(
-                    "note: the CPU reference follows random rays in less time than {name}, so it does; or add \
-                     --backend gpu"
-                )
-            });
+            if !quiet {
+                tell_once(|| {
+                    format!("note: the CPU reference follows random rays, as {name} is slower; or add --backend gpu")
+                });
+            }
             &CPU
         }
         _ => opened,
