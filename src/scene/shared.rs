@@ -5,7 +5,7 @@ use std::ops::Deref;
 use std::sync::{Mutex, PoisonError};
 
 /// Spheres that a scene shares with its copy on a device, and tables of their last picture, which the next one takes.
-#[derive(Debug)]
+#[derive(Debug, Default)]
 pub(crate) struct SharedSpheres {
     all: Vec<[f32; 4]>,
     kept: Mutex<Option<Box<dyn Any + Send>>>,

@@ -44,7 +44,7 @@ impl SceneSummary {
         Self {
             origin: scene.origin(),
             appearance: Arc::new(SceneAppearance::new(LinearRgb::WHITE.into(), 0)),
-            spheres: Arc::clone(scene.shared_spheres()),
+            spheres: Arc::default(),
             emitters: Emitters::default(),
             emissive: Vec::new(),
         }
