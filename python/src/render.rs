@@ -69,9 +69,9 @@ impl OnDevice {
         stop: &Stop,
     ) -> Outcome<RenderedImage> {
         // The CPU follows random rays in less time than a software device.
-        let is_random = backend == Backend::Auto && look.settings.is_random(scene, look.view().camera);
-        let Some(opened) = device::device(backend)?.filter(|opened| !(is_random && opened.headless.is_software()))
-        else {
+        let is_slow = |on: &Arc<OpenDevice>| on.headless.is_slower_than_cpu(scene, look.view().camera, &look.settings);
+        let opened = device::device(backend)?.filter(|opened| backend != Backend::Auto || !is_slow(opened));
+        let Some(opened) = opened else {
             return on_cpu(scene, look, layers, stop);
         };
         match self.on_gpu(&opened, (scene, version), look, layers, stop) {

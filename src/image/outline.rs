@@ -114,8 +114,10 @@ pub(crate) fn coverage_by(
     bands.concat()
 }
 
-/// The strength of the line between two pixels, from 0 to 1. A line fades in as jumps in depth grow from the smallest
-/// one to 3.5 times as much, so that it is strong between things that are far apart, and faint within them.
+/// A line fades in along this many times the smallest jump in depth: it is faint within things, and strong between them.
+pub(crate) const FADE: f32 = 2.5;
+
+/// The strength of the line between two pixels, from 0 to 1.
 fn strength(a: Spot, b: Spot, outline: &Outline) -> f32 {
     if a.id == b.id {
         return 0.0;
@@ -128,7 +130,7 @@ fn strength(a: Spot, b: Spot, outline: &Outline) -> f32 {
         return 1.0;
     }
     let (jump, least) = ((a.depth - b.depth).abs(), outline.depth * a.depth.min(b.depth));
-    if jump > least { ((jump - least) / (2.5 * least)).clamp(0.0, 1.0) } else { 0.0 }
+    if jump > least { ((jump - least) / (FADE * least)).clamp(0.0, 1.0) } else { 0.0 }
 }
 
 /// The number of smoothing passes of the curves. In each pass, a point moves towards the middle of its neighbours, so

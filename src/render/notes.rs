@@ -51,7 +51,7 @@ impl RenderSettings {
         notes.chain(deep).collect()
     }
 
-    /// Whether something other than the camera's lens prevents that a studio is smooth.
+    /// True if something other than the camera's lens prevents that a studio is smooth.
     pub(crate) fn has_chance(&self, appearance: &SceneAppearance) -> bool {
         let is_glossy =
             |material: &Material| matches!(material, Material::Lambert { specular, .. } if *specular != 0.0);

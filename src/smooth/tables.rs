@@ -4,7 +4,7 @@
 use super::cells::Cells;
 use super::levels::{Levels, Places};
 use super::openness::Openness;
-use crate::render::{Occlusion, Studio};
+use crate::render::Studio;
 use crate::scene::SharedSpheres;
 
 #[derive(Debug)]
@@ -26,10 +26,9 @@ struct Wanted {
 impl Tables {
     /// Takes the tables that an earlier picture left, or begins new ones.
     pub(super) fn take(spheres: &SharedSpheres, studio: Option<&Studio>) -> Self {
-        let radius = |occlusion: &Occlusion| occlusion.radius.unwrap_or(f64::INFINITY);
         let wanted = Wanted {
             shadows: studio.is_some_and(|studio| studio.shadows),
-            radius: studio.and_then(|studio| studio.occlusion.as_ref()).map(radius),
+            radius: studio.and_then(|studio| Some(studio.occlusion.as_ref()?.radius.unwrap_or(f64::INFINITY))),
         };
         if let Some(kept) = spheres.take::<Self>().filter(|kept| kept.wanted == wanted) {
             return kept;
@@ -44,7 +43,6 @@ impl Tables {
 
     /// The places of the spheres from which the tables were made, and the openness of points.
     pub(super) fn parts<'a>(&'a mut self, spheres: &'a [[f32; 4]]) -> (Places<'a>, Option<&'a mut Openness>) {
-        let Self { cells, levels, openness, .. } = self;
-        (Places { spheres, cells, levels }, openness.as_mut())
+        (Places { spheres, cells: &self.cells, levels: &self.levels }, self.openness.as_mut())
     }
 }

@@ -127,7 +127,7 @@ pub(crate) fn run(args: &PlanArgs) -> Result<(), Failure> {
         input.scene = Arc::new(bricks.largest_scene(input.color)?);
     }
     let headless = adapter.open_any()?;
-    if args.adapter.is_empty() && args.accel.accel.is_none() && is_quicker_on_cpu(&headless, &input) {
+    if args.adapter.first_given(args.accel.accel).is_none() && is_quicker_on_cpu(&headless, &input) {
         let text =
             "this is the plan with --backend gpu; without it, `render` follows random rays on the CPU reference here";
         input.notes.push(text.to_owned());

@@ -55,11 +55,12 @@ pub(crate) struct AdapterArgs {
     pub(crate) limits: Option<Limits>,
 }
 
-#[cfg(feature = "gpu")]
 impl AdapterArgs {
-    /// Whether no flag asks for an adapter.
-    pub(crate) fn is_empty(&self) -> bool {
-        self.adapter.is_none() && self.limits.is_none()
+    /// The first flag that asks for an adapter: one of these, or that of the structure.
+    pub(crate) fn first_given(&self, accel: Option<AccelChoice>) -> Option<&'static str> {
+        let given =
+            [("--adapter", self.adapter.is_some()), ("--accel", accel.is_some()), ("--limits", self.limits.is_some())];
+        given.into_iter().find(|(_, is_given)| *is_given).map(|(flag, _)| flag)
     }
 }
 

@@ -49,12 +49,9 @@ impl Device {
     }
 
     pub(crate) fn new(args: &DeviceArgs, accel: Option<AccelChoice>) -> Result<Self, Failure> {
-        let AdapterArgs { adapter, limits } = &args.adapter;
-        let given = [("--adapter", adapter.is_some()), ("--accel", accel.is_some()), ("--limits", limits.is_some())];
-        let given = given.into_iter().find(|(_, is_given)| *is_given);
-        match (args.backend, given) {
+        match (args.backend, args.adapter.first_given(accel)) {
             (Backend::Cpu, None) => Ok(Self::Cpu),
-            (Backend::Cpu, Some((flag, _))) => {
+            (Backend::Cpu, Some(flag)) => {
                 Err(Failure::usage(format!("{flag} and --backend cpu exclude each other; remove one of them")))
             }
             (backend, given) => Ok(Self::Adapter {
@@ -79,8 +76,8 @@ pub(crate) enum OpenDevice {
         choice: AccelChoice,
         /// A warning if the quick self-test failed.
         warning: Option<String>,
-        /// Whether flags ask for an adapter.
-        is_wanted: bool,
+        /// True if the CPU reference may render in its place, because no flag asks for an adapter.
+        or_cpu: bool,
     },
 }
 
@@ -102,8 +99,8 @@ impl Device {
             #[cfg(feature = "gpu")]
             Self::Adapter { wanted, choice, or_cpu } => match interrupt::opening(|| wanted.tested())? {
                 Ok((headless, warning)) => {
-                    let (headless, choice, is_wanted) = (Box::new(headless), *choice, !or_cpu);
-                    Ok(OpenDevice::Device { headless, choice, warning, is_wanted })
+                    let (headless, choice, or_cpu) = (Box::new(headless), *choice, *or_cpu);
+                    Ok(OpenDevice::Device { headless, choice, warning, or_cpu })
                 }
                 Err(_) if *or_cpu => Ok(OpenDevice::CpuInstead),
                 Err(error) => Err(Failure::Job(error.into())),

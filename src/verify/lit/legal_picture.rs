@@ -189,7 +189,7 @@ fn strengths(a: Option<Spot>, b: Option<Spot>, outline: &Outline) -> Option<[f64
         [a.depth.low.min(b.depth.low), a.depth.high.min(b.depth.high)].map(|depth| f64::from(outline.depth) * depth);
     let relative = 16.0 * U;
     let strength = |jump: f64, least: f64| {
-        if jump > least { ((jump - least) / (2.5 * least)).clamp(0.0, 1.0) } else { 0.0 }
+        if jump > least { ((jump - least) / (f64::from(outline::FADE) * least)).clamp(0.0, 1.0) } else { 0.0 }
     };
     let low = strength(jump.low * (1.0 - relative), least[1] * (1.0 + relative)) * (1.0 - relative);
     let high = (strength(jump.high * (1.0 + relative), least[0] * (1.0 - relative)) * (1.0 + relative)).min(1.0);

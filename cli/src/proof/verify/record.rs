@@ -207,7 +207,7 @@ fn judged_light(
     input.settings = finished.unfinished();
     let outputs = Outputs::unwritten(PictureFormat::Exr);
     let layers = outputs.layers(&input.encoding);
-    let opened = OpenDevice::Device { headless: Box::new(headless), choice, warning: None, is_wanted: true };
+    let opened = OpenDevice::Device { headless: Box::new(headless), choice, warning: None, or_cpu: false };
     let image = render::render(&input, finished.layers_for(layers), &opened)?;
     let written = FilePicture::of(&image, &input.encoding, &outputs)?;
     let encoding = input.encoding;
