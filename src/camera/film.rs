@@ -93,6 +93,15 @@ impl Film {
         Ok(Self { width, height, origin, ..*self })
     }
 
+    /// The film with each pixel divided into `side` rows of `side` pixels; `None` if it is too large. If `side` is odd, the
+    /// middle one of these has the centre of the pixel.
+    pub(crate) fn divided(&self, side: u32) -> Option<Self> {
+        let times = |count: u32| count.checked_mul(side).filter(|count| *count <= Self::MAX_SIDE);
+        let both = |[x, y]: [u32; 2]| Some([times(x)?, times(y)?]);
+        let [width, height] = both([self.width, self.height])?;
+        Some(Self { width, height, origin: both(self.origin)?, whole: both(self.whole)?, ..*self })
+    }
+
     /// The film that contains this part. A whole film returns itself.
     #[must_use]
     pub fn whole(&self) -> Self {

@@ -80,7 +80,7 @@ pub fn render_watched<'a>(
             };
             settings.check(search.scene())?;
             let (of_ids, primary) = (smooth.view_of_ids(), PrimarySettings::default());
-            let ids = primary_watched(search, &of_ids, &primary, smooth.layers(layers), &mut first_half(watch))?;
+            let ids = primary_watched(search, &of_ids, &primary, smooth.layers(layers).0, &mut first_half(watch))?;
             smooth.draw(ids.image, layers, RenderError::Stopped, watch)
         }
     }

@@ -10,9 +10,6 @@ use crate::image::{Image, Layer, LayerSet, NO_ID};
 use crate::parallel;
 use crate::range::RangeError;
 
-/// The layers that drawing outlines needs.
-pub(crate) const LAYERS: LayerSet = LayerSet::DATA.with(Layer::Alpha);
-
 /// Lines at edges of the data layers, where the depth jumps or the normal changes between spheres.
 #[derive(Clone, Copy, Debug, PartialEq, serde::Serialize, serde::Deserialize)]
 #[serde(default, deny_unknown_fields)]
@@ -33,6 +30,12 @@ impl Outline {
     #[must_use]
     pub fn thin() -> Self {
         Self { width: 1.2, color: LinearRgb::from_srgb8([0x34, 0x3a, 0x46]), depth: 0.01, angle: PI }
+    }
+
+    /// The layers that drawing them needs.
+    pub(crate) fn layers(&self) -> LayerSet {
+        let layers = LayerSet::COLOR.with(Layer::Alpha).with(Layer::Depth).with(Layer::Id);
+        if self.angle < PI { layers.with(Layer::Normal) } else { layers }
     }
 
     /// Checks that every number is in its range.
@@ -63,7 +66,8 @@ struct Spot {
 
 /// Draws an outline along every edge between two pixels where one sphere hides another or their normals differ. Edges
 /// between pixels form stairs, so the line follows a smooth curve through them. The distance of a pixel from that curve
-/// gives the fraction that the line covers. A picture that lacks one of [`LAYERS`] does not change.
+/// gives the fraction that the line covers. A picture that lacks one of [`Outline::layers`]
+/// does not change.
 pub(crate) fn draw(image: &mut Image, outline: &Outline) {
     let Some(coverage) = coverage(image, outline) else { return };
     let line = outline.color.to_array();
@@ -90,8 +94,12 @@ fn coverage(image: &Image, outline: &Outline) -> Option<Vec<f32>> {
 
 /// The strength of the line between two pixels of a picture, by their indices. `None` if a layer is missing.
 fn strengths(image: &Image, outline: &Outline) -> Option<impl Fn(usize, usize) -> f32 + Sync> {
-    let (ids, depths, normals) = (image.id()?, image.depth()?, image.normal()?);
-    let spot = move |index: usize| Spot { id: ids[index], depth: depths[index], normal: normals[index] };
+    let (ids, depths, normals) = (image.id()?, image.depth()?, image.normal());
+    if normals.is_none() && outline.layers().contains(Layer::Normal) {
+        return None;
+    }
+    let normal = move |index: usize| normals.map_or([0.0; 3], |normals| normals[index]);
+    let spot = move |index: usize| Spot { id: ids[index], depth: depths[index], normal: normal(index) };
     Some(move |a, b| strength(spot(a), spot(b), outline))
 }
 
@@ -115,7 +123,7 @@ pub(crate) fn coverage_by(
 }
 
 /// A line fades in along this many times the smallest jump in depth: it is faint within things, and strong between them.
-pub(crate) const FADE: f32 = 2.5;
+pub(crate) const FADE: f32 = 2.0;
 
 /// The strength of the line between two pixels, from 0 to 1.
 fn strength(a: Spot, b: Spot, outline: &Outline) -> f32 {

@@ -67,12 +67,19 @@ impl Image {
         Ok(both)
     }
 
-    /// A rectangle of the picture, of `size` (width and height), whose first pixel is at `origin`.
-    pub(crate) fn cut(&self, origin: [u32; 2], [width, height]: [u32; 2]) -> Result<Self, ImageTooLarge> {
-        let mut part = Self::new(width, height, self.layers())?;
-        let [left, top] = origin.map(|start| start as usize);
-        let rows = (0..height as usize).map(|row| (row * width as usize, (top + row) * self.width as usize + left));
-        part.copy(self, &rows, width as usize);
+    /// Every pixel in a rectangle of the picture, or only one of `step` in every row and column: `size` pixels in all (width
+    /// and height), of which the first is at `origin`.
+    pub(crate) fn cut(&self, origin: [u32; 2], size: [u32; 2], step: u32) -> Result<Self, ImageTooLarge> {
+        let mut part = Self::new(size[0], size[1], self.layers())?;
+        let [[left, top], [width, height]] = [origin, size].map(|pair| pair.map(|side| side as usize));
+        let (step, stride) = (step as usize, self.width as usize);
+        let start =
+            |row: usize, column: usize| (row * width + column, (top + row * step) * stride + left + column * step);
+        if step == 1 {
+            part.copy(self, &(0..height).map(|row| start(row, 0)), width);
+        } else {
+            part.copy(self, &(0..height * width).map(|at| start(at / width, at % width)), 1);
+        }
         Ok(part)
     }
 

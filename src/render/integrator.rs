@@ -154,6 +154,10 @@ pub struct Studio {
     /// Other pictures take random rays.
     #[serde(rename = "smooth")]
     pub is_smooth: bool,
+    /// True if all pixels of a smooth picture have rays at fixed places, their number being the odd square that is nearest
+    /// to that of samples, and not only pixels at edges. Otherwise spheres that are smaller than pixels may be missed.
+    #[serde(rename = "dense")]
+    pub is_dense: bool,
     /// The largest number of translucent surfaces that are visible behind each other: 1 to 64.
     pub max_surfaces: u32,
     /// Fading of colours with distance.
@@ -170,6 +174,7 @@ impl Default for Studio {
             occlusion: None,
             shadows: true,
             is_smooth: false,
+            is_dense: false,
             max_surfaces: 16,
             depth_cue: None,
             outline: None,

@@ -14,7 +14,6 @@ use crate::camera::filter::PixelFilter;
 use crate::image::LayerSet;
 use crate::image::color::LinearRgb;
 use crate::image::denoise;
-use crate::image::outline;
 use crate::light::{Ground, Light, LightFrame, LightKind, Sky};
 use crate::range::RangeError;
 
@@ -202,7 +201,7 @@ impl RenderSettings {
     #[must_use]
     pub fn layers_for(&self, wanted: LayerSet) -> LayerSet {
         let lines = self.studio_parameters().and_then(|studio| studio.outline);
-        let for_lines = lines.map_or(LayerSet::COLOR, |_| outline::LAYERS);
+        let for_lines = lines.map_or(LayerSet::COLOR, |lines| lines.layers());
         let for_noise = if self.sampling.denoise { denoise::GUIDES } else { LayerSet::COLOR };
         wanted.iter().chain(for_lines.iter()).chain(for_noise.iter()).collect()
     }

@@ -3,7 +3,8 @@
 //! Such a picture follows from the spheres that rays through the centres of pixels hit, which a device or the reference
 //! finds. A pixel is an *edge* if one of its eight neighbours shows another sphere. It then has rays at some fixed places,
 //! which are the same for all pixels; each may hit the spheres that the pixel and its neighbours show. Every sphere in a
-//! pixel is lit once, where it is hit on average. Ambient light is dimmed by [`Openness`].
+//! pixel is lit once, where it is hit on average. Ambient light is dimmed by [`Openness`]. In a
+//! [dense](crate::render::Studio::is_dense) picture, all pixels have rays, whose ids are found as those of a larger film.
 //!
 //! So a picture depends only on spheres, view, settings and ids, and does not depend on
 //! the device that found them.
@@ -22,7 +23,7 @@ use cells::Cells;
 #[cfg(feature = "gpu")]
 use levels::Levels;
 use lit::Lit;
-use spots::{Finder, Row, Spot, rays, with_neighbors};
+use spots::{Finder, Rays, Row, Spot};
 use tables::Tables;
 
 mod caps;
@@ -69,6 +70,7 @@ pub(crate) struct SmoothPicture<'a> {
     /// Origin of the spheres' frame, in world space.
     origin: DVec3,
     view: View<'a>,
+    rays: Rays,
     settings: &'a RenderSettings,
 }
 
@@ -80,7 +82,8 @@ impl<'a> SmoothPicture<'a> {
         view: &View<'a>,
         settings: &'a RenderSettings,
     ) -> Option<Self> {
-        let picture = Self { spheres, appearance, origin, view: *view, settings };
+        let rays = Rays::new(&view.film, settings);
+        let picture = Self { spheres, appearance, origin, view: *view, rays, settings };
         is_smooth(settings, appearance, view.camera).then_some(picture)
     }
 
@@ -89,16 +92,25 @@ impl<'a> SmoothPicture<'a> {
         Self::new((scene.shared_spheres(), scene.origin()), scene.checked_appearance(), view, settings)
     }
 
-    /// The view of the ids from which the picture follows: for a part of a film, with the pixels around it.
+    /// The view of the ids from which the picture follows: for a part of a film, with the pixels around it, and with a pixel
+    /// for every ray of a dense picture.
     pub(crate) fn view_of_ids(&self) -> View<'a> {
-        View { film: with_neighbors(&self.view.film), ..self.view }
+        View { film: self.rays.film, ..self.view }
+    }
+
+    /// The places in [`Self::view_of_ids`] of the ids from which a pixel follows, the ray through its centre in the middle.
+    /// `None` for those outside, which show what the middle shows.
+    pub(crate) fn places(&self, pixel: [u32; 2]) -> Vec<Option<[u32; 2]>> {
+        (0..self.rays.ids()).map(|at| self.rays.place(pixel, at)).collect()
     }
 
     /// The bytes of the host's memory for drawing, about.
     #[cfg(feature = "gpu")]
     pub(crate) fn bytes(&self) -> u64 {
         let pixels = self.view.film.pixel_count();
-        let spots = pixels.min(BAND as u64) * 2 * size_of::<Spot>() as u64;
+        let side = u64::from(self.rays.side);
+        // A ray makes at most one spot, and a pixel at an edge several.
+        let spots = (pixels * (side * side).max(2)).min(2 * BAND as u64) * size_of::<Spot>() as u64;
         let cells = Cells::new(self.spheres);
         let shadows = self.settings.studio_parameters().is_some_and(|studio| studio.shadows);
         let is_lamp = |kind| shadows && matches!(kind, LightKind::Directional { .. });
@@ -109,9 +121,10 @@ impl<'a> SmoothPicture<'a> {
             + lamps as u64 * lamps::Lamp::bytes(&cells, pixels)
     }
 
-    /// The layers of the picture of ids from which a picture with these layers follows.
-    pub(crate) fn layers(&self, wanted: LayerSet) -> LayerSet {
-        self.settings.layers_for(wanted).iter().chain([Layer::Id]).collect()
+    /// The layers of the picture of ids from which a picture with these layers follows, and whether it is shaded.
+    pub(crate) fn layers(&self, wanted: LayerSet) -> (LayerSet, bool) {
+        let layers: LayerSet = self.settings.layers_for(wanted).iter().chain([Layer::Id]).collect();
+        (layers, layers.contains(Layer::Normal))
     }
 
     /// Draws the picture from that of its ids, by primary rays, with the layers of [`Self::layers`]. The error is `stopped`
@@ -123,19 +136,17 @@ impl<'a> SmoothPicture<'a> {
         stopped: E,
         watch: &mut Watch<'_>,
     ) -> Result<Picture, E> {
-        let (film, total) = (&self.view.film, rays(&self.settings.sampling));
+        let (film, rays) = (&self.view.film, &self.rays);
+        let total = rays.count;
         let mut progress = Progress { samples: 0, total, part: 0.5, noise: None };
         let mut go_on = |part: f64| {
             progress.part = 0.5 + 0.5 * part;
             watch(&progress) != Decision::Stop
         };
-        let around = with_neighbors(film);
         let shown = ids.id().unwrap_or_default().to_vec();
-        let mut image = if film == &around {
-            ids
-        } else {
-            let origin = [0, 1].map(|axis| film.origin()[axis] - around.origin()[axis]);
-            ids.cut(origin, [film.width(), film.height()])?
+        let mut image = match rays.place([0; 2], rays.ids() / 2) {
+            Some(first) if *film != rays.film => ids.cut(first, [film.width(), film.height()], rays.side)?,
+            _ => ids,
         };
         let Some((opacity, crowded)) = self.draw_from(&shown, &mut image, &mut go_on) else { return Err(stopped) };
         if let Some(lines) = self.settings.studio_parameters().and_then(|studio| studio.outline) {
@@ -145,14 +156,14 @@ impl<'a> SmoothPicture<'a> {
         Ok(Picture { image, samples: total, noise: None, hits: Some(opacity * f64::from(total)), crowded })
     }
 
-    /// The light of some pixels, given with the ids of three rows of three pixels, of which they are the middle.
-    pub(crate) fn pixels(&self, pixels: &[([u32; 2], [u32; 9])]) -> Vec<Averages> {
+    /// The light of some pixels, given with the ids of their [places](Self::places).
+    pub(crate) fn pixels(&self, pixels: &[([u32; 2], Vec<u32>)]) -> Vec<Averages> {
         let mut tables = self.tables();
         let Some((finder, mut lit)) = self.tools(&mut tables) else { return Vec::new() };
         let spots = parallel::map(pixels.len(), |at| {
-            let (pixel, ids) = pixels[at];
+            let (pixel, ids) = &pixels[at];
             let mut found = Row::default();
-            finder.pixel(pixel, ids[4], ids.into_iter(), &mut found);
+            finder.pixel(*pixel, ids, &mut found);
             found
         });
         lit.see(&spots);
@@ -168,7 +179,7 @@ impl<'a> SmoothPicture<'a> {
 
     /// The tools of drawing: they find spots, and light them.
     fn tools<'b>(&'b self, tables: &'b mut Tables) -> Option<(Finder<'a>, Lit<'b>)> {
-        let finder = Finder::new(self.spheres, self.origin, &self.view, self.settings);
+        let finder = Finder::new(self.spheres, self.origin, &self.view, self.rays, self.settings);
         Some((finder, Lit::new(self.appearance, self.view.camera, self.settings, tables, self.spheres)?))
     }
 
@@ -179,7 +190,8 @@ impl<'a> SmoothPicture<'a> {
         let (finder, mut lit) = self.tools(&mut tables)?;
         let [width, height] = [image.width(), image.height()].map(|side| side as usize);
         let mut opacity = 0.0;
-        for rows in parallel::ranges(height, (BAND / width).max(1)) {
+        let side = self.rays.side as usize;
+        for rows in parallel::ranges(height, (BAND / (width * side * side)).max(1)) {
             let spots = parallel::map(rows.len(), |row| finder.row(ids, (rows.start + row) as u32));
             lit.see(&spots);
             if !go_on((rows.start + rows.len() / 2) as f64 / height as f64) {
@@ -219,8 +231,7 @@ impl<'a> SmoothPicture<'a> {
         }
         color += (1.0 - alpha) * lit.background;
         let [color, albedo] = [color, albedo].map(|color| color.as_vec3().to_array());
-        let samples = rays(&self.settings.sampling);
-        Averages { color, alpha: alpha as f32, albedo, samples, variance: 0.0 }
+        Averages { color, alpha: alpha as f32, albedo, samples: self.rays.count, variance: 0.0 }
     }
 }
 

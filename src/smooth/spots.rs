@@ -7,7 +7,7 @@ use crate::camera::sampling::{pair, pixel_seed};
 use crate::camera::{View, filter};
 use crate::geometry::ray::Ray;
 use crate::image::NO_ID;
-use crate::render::{RenderSettings, Sampling};
+use crate::render::RenderSettings;
 
 /// A place on a sphere that a pixel shows, in the scene's frame.
 #[derive(Clone, Copy, Debug)]
@@ -35,14 +35,56 @@ pub(super) struct Row {
     pub(super) counts: Vec<u8>,
 }
 
+/// The rays of the pixels of a film.
+#[derive(Clone, Copy)]
+pub(super) struct Rays {
+    /// In the pixels of this film, the device finds ids.
+    pub(super) film: Film,
+    /// The first pixel of the film in that one.
+    first: [u32; 2],
+    /// The number of rows and columns of rays in each pixel. A single ray has more beside it at edges.
+    pub(super) side: u32,
+    /// The number of rays in a pixel that has several.
+    pub(super) count: u32,
+}
+
+impl Rays {
+    pub(super) fn new(film: &Film, settings: &RenderSettings) -> Self {
+        // More rays change nothing that is seen, and spots are counted in a byte.
+        let count = settings.sampling.samples.min(256);
+        let odd = 2 * ((f64::from(count).sqrt() - 1.0) / 2.0).round() as u32 + 1;
+        let side = settings.studio_parameters().filter(|studio| studio.is_dense).map_or(1, |_| odd.min(15));
+        if let (Some(film), true) = (film.divided(side), side > 1) {
+            return Self { film, first: [0; 2], side, count: side * side };
+        }
+        let around = with_neighbors(film);
+        let first = [0, 1].map(|axis| film.origin()[axis] - around.origin()[axis]);
+        Self { film: around, first, side: 1, count }
+    }
+
+    /// The number of ids from which a pixel follows.
+    pub(super) fn ids(&self) -> u32 {
+        if self.side > 1 { self.count } else { MOST as u32 }
+    }
+
+    /// The place of one of these ids, row by row; `None` if it is outside. The middle one is at the pixel's centre.
+    pub(super) fn place(&self, [column, row]: [u32; 2], at: u32) -> Option<[u32; 2]> {
+        let [x, y] = self.first;
+        if self.side > 1 {
+            return Some([column * self.side + at % self.side, row * self.side + at / self.side]);
+        }
+        let place = [(x + column + at % 3).checked_sub(1)?, (y + row + at / 3).checked_sub(1)?];
+        (place[0] < self.film.width() && place[1] < self.film.height()).then_some(place)
+    }
+}
+
 /// Finds the spots of a picture.
 pub(super) struct Finder<'a> {
     spheres: &'a [[f32; 4]],
     origin: DVec3,
     view: View<'a>,
-    /// The pixels with ids.
-    around: Film,
-    /// The fixed places of rays in pixels at edges, counted from the centre.
+    rays: Rays,
+    /// The fixed places of rays in pixels that have several, counted from the centre.
     offsets: Vec<DVec2>,
     /// True if spots have the width of their pixels, which shadows need.
     with_widths: bool,
@@ -59,52 +101,74 @@ struct Hits {
     distance: f64,
 }
 
+impl Hits {
+    fn add(&mut self, other: &Self) {
+        self.count += other.count;
+        self.position += other.position;
+        self.direction += other.direction;
+        self.distance += other.distance;
+    }
+}
+
 /// The most spheres that a pixel and its neighbours show.
 const MOST: usize = 9;
 
 impl<'a> Finder<'a> {
-    pub(super) fn new(spheres: &'a [[f32; 4]], origin: DVec3, view: &View<'a>, settings: &RenderSettings) -> Self {
+    pub(super) fn new(
+        spheres: &'a [[f32; 4]],
+        origin: DVec3,
+        view: &View<'a>,
+        rays: Rays,
+        settings: &RenderSettings,
+    ) -> Self {
         let sampling = &settings.sampling;
         let table = sampling.filter.offset_table();
         let seed = pixel_seed([0, 0], sampling.seed);
-        let offset = |k| DVec2::from(pair(seed, k, 0).map(|u| filter::offset(&table, u)));
+        let offset = |k| match rays.side {
+            1 => DVec2::from(pair(seed, k, 0).map(|u| filter::offset(&table, u))),
+            side => DVec2::from([k % side, k / side].map(|at| (f64::from(at) + 0.5) / f64::from(side) - 0.5)),
+        };
         // A single ray is at the centre.
-        let offsets = (0..rays(sampling)).filter(|_| sampling.samples > 1).map(offset).collect();
+        let offsets = (0..rays.count).filter(|_| rays.count > 1).map(offset).collect();
         let with_widths = settings.studio_parameters().is_some_and(|studio| studio.shadows);
-        Self { spheres, origin, view: *view, around: with_neighbors(&view.film), offsets, with_widths }
+        Self { spheres, origin, view: *view, rays, offsets, with_widths }
     }
 
     /// The spots of a row.
     pub(super) fn row(&self, ids: &[u32], row: u32) -> Row {
-        let film = &self.view.film;
+        let width = self.rays.film.width() as usize;
         let mut found = Row::default();
-        let width = self.around.width() as usize;
-        for column in 0..film.width() {
-            let pixel = [column, row];
-            let place = [0, 1].map(|axis| (film.in_whole(pixel)[axis] - self.around.origin()[axis]) as usize);
-            let near = |axis: usize, side: u32| place[axis].saturating_sub(1)..(place[axis] + 2).min(side as usize);
-            let rows = near(1, self.around.height());
-            let ids_near = rows.flat_map(|y| ids[y * width..][near(0, self.around.width())].iter().copied());
-            self.pixel(pixel, ids[place[1] * width + place[0]], ids_near, &mut found);
+        let mut shown = vec![NO_ID; self.rays.ids() as usize];
+        let middle = shown.len() / 2;
+        for column in 0..self.view.film.width() {
+            let id = |at: usize| {
+                let place = self.rays.place([column, row], at as u32)?;
+                Some(ids[place[1] as usize * width + place[0] as usize])
+            };
+            let own = id(middle).unwrap_or(NO_ID);
+            shown.iter_mut().enumerate().for_each(|(at, shown)| *shown = id(at).unwrap_or(own));
+            self.pixel([column, row], &shown, &mut found);
         }
         found
     }
 
-    /// Appends the spots of a pixel that shows the sphere `own`, with neighbours that show `near`, row by row. These may
-    /// have `own` among them.
-    pub(super) fn pixel(&self, pixel: [u32; 2], own: u32, near: impl Iterator<Item = u32>, found: &mut Row) {
-        let (mut shown, mut count) = ([own; MOST], 1);
-        for id in near {
-            if id != own && !shown[..count].contains(&id) {
-                shown[count] = id;
-                count += 1;
-            }
-        }
+    /// Appends the spots of a pixel from the ids that its rays and those around them found.
+    pub(super) fn pixel(&self, pixel: [u32; 2], ids: &[u32], found: &mut Row) {
+        let own = ids[ids.len() / 2];
         let before = found.all.len();
-        if count > 1 && !self.offsets.is_empty() {
-            self.at_edge(pixel, &shown[..count], &mut found.all);
-        } else {
+        if self.offsets.is_empty() || ids.iter().all(|id| *id == own) {
             found.all.extend(self.at_center(pixel, own));
+        } else if self.rays.side > 1 {
+            self.at_rays(pixel, ids, &mut found.all);
+        } else {
+            let (mut shown, mut count) = ([own; MOST], 1);
+            for id in ids {
+                if !shown[..count].contains(id) {
+                    shown[count] = *id;
+                    count += 1;
+                }
+            }
+            self.at_edge(pixel, &shown[..count], &mut found.all);
         }
         found.counts.push((found.all.len() - before) as u8);
     }
@@ -133,13 +197,30 @@ impl<'a> Finder<'a> {
 
     /// The spot that the ray through a pixel's centre hits.
     fn at_center(&self, pixel: [u32; 2], id: u32) -> Option<Spot> {
-        let ray = self.ray(pixel, DVec2::ZERO).filter(|_| id != NO_ID)?;
+        Some(self.spot(pixel, &self.hit(pixel, DVec2::ZERO, id)?, 1))
+    }
+
+    /// Where a ray hits a sphere that a device found.
+    fn hit(&self, pixel: [u32; 2], offset: DVec2, id: u32) -> Option<Hits> {
+        let ray = self.ray(pixel, offset).filter(|_| id != NO_ID)?;
         let (center, radius) = sphere(self.spheres, id);
         // A ray that a device finds to hit may miss by rounding.
         let foot = (center - ray.origin).dot(ray.direction);
         let distance = distance(&ray, center, radius).unwrap_or(foot);
-        let direction = ray.direction;
-        Some(self.spot(pixel, &Hits { id, count: 1, position: ray.at(distance), direction, distance }, 1))
+        Some(Hits { id, count: 1, position: ray.at(distance), direction: ray.direction, distance })
+    }
+
+    /// The spots of a pixel whose rays found these ids.
+    fn at_rays(&self, pixel: [u32; 2], ids: &[u32], spots: &mut Vec<Spot>) {
+        let mut all: Vec<Hits> = Vec::with_capacity(ids.len());
+        for (offset, id) in self.offsets.iter().zip(ids) {
+            let Some(hit) = self.hit(pixel, *offset, *id) else { continue };
+            match all.iter_mut().find(|hits| hits.id == *id) {
+                Some(hits) => hits.add(&hit),
+                None => all.push(hit),
+            }
+        }
+        spots.extend(all.iter().map(|hits| self.spot(pixel, hits, self.rays.count)));
     }
 
     /// The spots that rays at the fixed places hit in a pixel at an edge, among the spheres `shown`.
@@ -165,11 +246,8 @@ impl<'a> Finder<'a> {
             }
             match (nearest, ray) {
                 (Some((t, k)), Some(ray)) => {
-                    let of = &mut hits[k];
-                    of.count += 1;
-                    of.position += ray.at(t);
-                    of.direction += ray.direction;
-                    of.distance += t;
+                    let hit = Hits { count: 1, position: ray.at(t), direction: ray.direction, distance: t, ..hits[k] };
+                    hits[k].add(&hit);
                 }
                 // Nothing is known of what else the ray hits, unless the background is seen beside it.
                 _ if shown.contains(&NO_ID) => missing += 1,
@@ -213,13 +291,8 @@ pub(super) fn sphere(spheres: &[[f32; 4]], id: u32) -> (DVec3, f64) {
     (DVec3::new(x, y, z), radius)
 }
 
-/// The number of rays in a pixel at an edge. More than 256 change nothing that is seen.
-pub(super) fn rays(sampling: &Sampling) -> u32 {
-    sampling.samples.min(256)
-}
-
 /// The pixels of a film and, if it is a part of another one, those around it.
-pub(super) fn with_neighbors(film: &Film) -> Film {
+fn with_neighbors(film: &Film) -> Film {
     let whole = film.whole();
     let (first, size) = (film.origin(), [film.width(), film.height()]);
     let last = [0, 1].map(|axis| (first[axis] + size[axis] + 1).min([whole.width(), whole.height()][axis]));

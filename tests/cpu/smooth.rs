@@ -11,7 +11,7 @@ use pinhole::scene::{Centers, SceneUpdate};
 use pinhole::verify::finished::{FinishedRequest, PixelVerdict};
 use pinhole::verify::written::{Samples, WrittenPicture};
 use pinhole::verify::{Checker, Outcome};
-use pinhole::{Encoding, Film, Image, Integrator, LayerSet, LinearRgb, RenderSettings, Scene, View, cpu};
+use pinhole::{Encoding, Film, Image, Integrator, LayerSet, LinearRgb, RenderSettings, Scene, Sphere, View, cpu};
 
 use crate::support::spheres::{self, Spheres};
 
@@ -35,6 +35,14 @@ fn studio(studio: &Studio, samples: u32) -> RenderSettings {
         background: LinearRgb::BLACK,
         ..RenderSettings::default()
     }
+}
+
+/// The settings with rays in all pixels.
+fn dense(mut settings: RenderSettings) -> RenderSettings {
+    if let Integrator::Studio(studio) = &mut settings.integrator {
+        studio.is_dense = true;
+    }
+    settings
 }
 
 fn white(spheres: &Spheres) -> Scene {
@@ -266,15 +274,51 @@ fn parts_of_a_film_are_as_the_whole() {
     if let Integrator::Studio(studio) = &mut settings.integrator {
         *studio = Studio { outline: Some(Outline::thin()), is_smooth: true, ..Studio::default() };
     }
-    let whole = picture(&scene, &camera, film, &settings);
-    let (unfinished, layers) = (settings.unfinished(), settings.layers_for(LayerSet::ALL));
-    let mut joined = Image::new(24, 18, layers).unwrap();
-    for (origin, size) in [([0, 0], [11, 7]), ([11, 0], [13, 7]), ([0, 7], [23, 11]), ([23, 7], [1, 11])] {
-        let part = cpu::render(&scene, &View::new(&camera, film.part(origin, size).unwrap()), &unfinished, layers);
-        joined.put(&part.unwrap(), origin).unwrap();
+    for settings in [settings.clone(), dense(settings)] {
+        let whole = picture(&scene, &camera, film, &settings);
+        let (unfinished, layers) = (settings.unfinished(), settings.layers_for(LayerSet::ALL));
+        let mut joined = Image::new(24, 18, layers).unwrap();
+        for (origin, size) in [([0, 0], [11, 7]), ([11, 0], [13, 7]), ([0, 7], [23, 11]), ([23, 7], [1, 11])] {
+            let part = cpu::render(&scene, &View::new(&camera, film.part(origin, size).unwrap()), &unfinished, layers);
+            joined.put(&part.unwrap(), origin).unwrap();
+        }
+        let joined = cpu::finish(joined, &settings, LayerSet::ALL);
+        assert!(joined.to_le_bytes() == whole.to_le_bytes());
     }
-    let joined = cpu::finish(joined, &settings, LayerSet::ALL);
-    assert!(joined.to_le_bytes() == whole.to_le_bytes());
+}
+
+/// A pixel of a dense picture is the mean of a square of pixels of a larger one, and has the hit of its centre. The number
+/// of its rays is the nearest odd square.
+#[test]
+fn dense_pictures_are_means_of_larger_ones() {
+    let spheres = spheres::random(3000, 8, |_| 0.01).into_iter().zip(0_u32..).map(|(sphere, k)| {
+        let [x, y, z, radius] = sphere.map(f64::from);
+        let color = LinearRgb::from_srgb8([50, 120, 200].map(|c| (c + 7 * k) as u8));
+        Sphere::new([x, y, z], radius, color)
+    });
+    let scene = Scene::new(&spheres.collect::<Vec<_>>()).unwrap();
+    let (camera, [width, height]) = (camera(&scene), [24, 18]);
+    let film = Film::new(width, height).unwrap();
+    let flat = |samples| studio(&Studio { ambient: LinearRgb::WHITE, shadows: false, ..Studio::default() }, samples);
+    let of_centers = picture(&scene, &camera, film, &flat(1));
+    for (samples, side) in [(1, 1), (4, 3), (8, 3), (9, 3), (16, 5), (1000, 15)] {
+        let image = picture(&scene, &camera, film, &dense(flat(samples)));
+        let larger = picture(&scene, &camera, Film::new(side * width, side * height).unwrap(), &flat(1));
+        let rays = (side * side) as f32;
+        for pixel in 0..(width * height) as usize {
+            let [i, j] = [pixel as u32 % width, pixel as u32 / width];
+            let of_ray = |k: u32| ((j * side + k / side) * side * width + i * side + k % side) as usize;
+            let sum = (0..side * side).fold([0.0; 3], |sum: [f32; 3], k| {
+                let color = larger.color()[of_ray(k)];
+                [0, 1, 2].map(|c| sum[c] + color[c])
+            });
+            let differences = [0, 1, 2].map(|c| (image.color()[pixel][c] - sum[c] / rays).abs());
+            assert!(differences.iter().all(|difference| *difference < 1e-5), "{samples}: {differences:?}");
+        }
+        assert_eq!(image.samples().unwrap()[0], side * side);
+        assert!(image.id() == of_centers.id() && image.depth() == of_centers.depth());
+        assert!(image.normal() == of_centers.normal() && image.position() == of_centers.position());
+    }
 }
 
 /// Spheres that coincide, contain others, are of very different sizes or far apart: every colour is an openness.
@@ -337,7 +381,13 @@ fn forged_pixels_are_violations() {
     if let Integrator::Studio(studio) = &mut lined.integrator {
         studio.outline = Some(Outline::thin());
     }
-    for (name, settings) in [("plain", plain), ("lined", lined), ("shadows", lamp(DVec3::Y, 0.1, 4))] {
+    for (name, settings) in [
+        ("plain", plain.clone()),
+        ("lined", lined),
+        ("shadows", lamp(DVec3::Y, 0.1, 4)),
+        ("dense", dense(plain)),
+        ("dense shadows", dense(lamp(DVec3::Y, 0.1, 9))),
+    ] {
         let image = picture(&scene, &camera, film, &settings);
         let encoding = Encoding::default();
         let exact: Vec<[f32; 4]> = image.color().iter().map(|[r, g, b]| [*r, *g, *b, 1.0]).collect();

@@ -126,6 +126,7 @@ fn bands(_: &'static Headless) {
 fn planned(headless: &Headless, view: &View, choice: AccelChoice, bytes: u64) -> RenderPlan {
     let request = PictureRequest {
         is_only: false,
+        is_shaded: true,
         scene: &view.scene,
         view: view.seen(),
         settings: &view.settings,

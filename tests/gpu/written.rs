@@ -177,13 +177,16 @@ pub(crate) fn none_violated(judged: &[FinishedCertificate]) -> Result<(), Failed
 fn smooth(mut view: View) -> Result<(), Failed> {
     let outline = Some(Outline { depth: 1e-3, ..Outline::default() });
     let occlusion = Some(Occlusion::default());
-    let studio = Studio { is_smooth: true, occlusion, outline, ..Studio::default() };
     let sampling = Sampling { samples: 8, ..Sampling::default() };
-    view.settings = RenderSettings { integrator: Integrator::Studio(studio), sampling, ..RenderSettings::studio() };
-    if !view.settings.is_smooth(&view.scene, view.camera.as_ref()) {
-        return Ok(());
+    for is_dense in [false, true] {
+        let studio = Studio { is_smooth: true, is_dense, occlusion, outline, ..Studio::default() };
+        view.settings = RenderSettings { integrator: Integrator::Studio(studio), sampling, ..RenderSettings::studio() };
+        if !view.settings.is_smooth(&view.scene, view.camera.as_ref()) {
+            return Ok(());
+        }
+        none_violated(&finished(headless()?, &view, false)?)?;
     }
-    none_violated(&finished(headless()?, &view, false)?)
+    Ok(())
 }
 
 /// Judges pictures of this device. Almost all pixels are exact.

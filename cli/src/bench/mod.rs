@@ -109,6 +109,7 @@ fn measure(
     let (view, settings) = (View::new(camera.as_ref(), *film), RenderSettings::default());
     let request = PictureRequest {
         is_only: choice == AccelChoice::Tiles,
+        is_shaded: true,
         scene: spheres,
         view,
         settings: &settings,

@@ -89,7 +89,8 @@ impl Headless {
             Decision::Stop => Decision::Stop,
             _ => Decision::GoOn,
         };
-        self.render_primary(scene, view, &PrimarySettings::default(), layers, watch).await
+        let primary = layers.contains(Layer::Normal).then(PrimarySettings::default);
+        self.render_primary(scene, view, primary.as_ref(), layers, watch).await
     }
 }
 

@@ -8,7 +8,7 @@ use crate::camera::View;
 use crate::gpu::checks::scoped;
 use crate::gpu::error::GpuError;
 use crate::gpu::headless::Headless;
-use crate::gpu::headless::readback::{ReadableBuffer, TileTextures};
+use crate::gpu::headless::readback::{ReadBack, ReadableBuffer, TileTextures};
 use crate::gpu::passes::bands::tile_size;
 use crate::gpu::passes::frame::{BandBrick, Frame};
 use crate::gpu::passes::renderer::Renderer;
@@ -97,7 +97,7 @@ impl Headless {
         self.with_renderer(options, async |renderer: &Renderer| {
             let (device, queue) = (&self.device, &self.queue);
             let tile_size = tile_size(&device.limits(), self.shape(), &view.film, renderer.keeps_rays);
-            let textures = scoped(device, || TileTextures::new(device, tile_size, false)).await?;
+            let textures = scoped(device, || TileTextures::new(device, tile_size, ReadBack::Color)).await?;
             let mut frame = Frame::new(renderer, device, &textures.targets()).await?;
             let has_clock = device.features().contains(wgpu::Features::TIMESTAMP_QUERY);
             let period = f64::from(queue.get_timestamp_period());

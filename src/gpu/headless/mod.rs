@@ -234,13 +234,15 @@ impl Headless {
     ) -> Result<Picture, GpuError> {
         if settings.integrator.is_primary() {
             let primary = scene.primary_settings(settings)?;
-            let image = self.render_primary(scene, view, &primary, layers, watch).await?;
+            let image = self.render_primary(scene, view, Some(&primary), layers, watch).await?;
             Ok(Picture::by_primary_rays(image))
         } else if let Some(smooth) = scene.smooth(view, settings) {
             settings.check_with(scene.appearance())?;
-            let (of_ids, primary) = (smooth.view_of_ids(), PrimarySettings::default());
-            let layers_of_ids = smooth.layers(layers);
-            let ids = self.render_primary(scene, &of_ids, &primary, layers_of_ids, &mut first_half(watch)).await?;
+            let (layers_of_ids, is_shaded) = smooth.layers(layers);
+            let (of_ids, primary) = (smooth.view_of_ids(), is_shaded.then(PrimarySettings::default));
+            let mut first = first_half(watch);
+            let ids = self.render_primary(scene, &of_ids, primary.as_ref(), layers_of_ids, &mut first).await?;
+            drop(first);
             let _phase = self.phase("light");
             smooth.draw(ids, layers, GpuError::Stopped, watch)
         } else {

@@ -10,7 +10,7 @@ use crate::gpu::headless::Headless;
 use crate::gpu::headless::plan::{PictureRequest, RenderPlan};
 use crate::gpu::headless::primary::begin_pass;
 use crate::gpu::headless::progress::{Picture, TracedPixels, UploadProgress, UploadStep, UploadWatch, Watch};
-use crate::gpu::headless::readback::{DerivedLayers, ReadableBuffer, TileTextures};
+use crate::gpu::headless::readback::{DerivedLayers, ReadBack, ReadableBuffer, TileTextures};
 use crate::gpu::headless::renderers::Renderers;
 use crate::gpu::headless::uploading::OptionsOf;
 use crate::gpu::passes::bands::{rows_per_band, tile_size};
@@ -23,7 +23,7 @@ use crate::gpu::scene::scene_buffers::SceneBuffers;
 use crate::gpu::scene::scene_summary::{SceneSummary, ShapeIds};
 use crate::gpu::scene::scene_upload::{BrickSource, SceneUpload, UploadedBricks};
 use crate::gpu::shader::records::{Hit, SceneSpace};
-use crate::image::{Image, LayerSet, NO_ID};
+use crate::image::{Image, NO_ID};
 use crate::parallel::map;
 use crate::render::{NearestPicture, RenderSettings};
 use crate::smooth::first_half;
@@ -47,7 +47,7 @@ impl Headless {
         upload_watch: &mut UploadWatch<'_>,
         watch: &mut Watch<'_>,
     ) -> Result<Picture, GpuError> {
-        let PictureRequest { scene, view, settings, layers, .. } = *request;
+        let PictureRequest { scene, view, settings, layers, is_shaded, .. } = *request;
         if let Some(smooth) = request.smooth() {
             settings.check(scene)?;
             let primary = RenderSettings::default();
@@ -66,12 +66,16 @@ impl Headless {
         }
         let options_of = |kind: BrickKind, several_bricks: bool| {
             let options = self.options_of(&[kind], several_bricks, view.camera);
-            RendererOptions { data_layers: layers != LayerSet::COLOR, ..options }
+            RendererOptions { data_layers: ReadBack::new(layers, is_shaded).has_data(), ..options }
         };
         let options_of: Option<&OptionsOf<'_>> =
             if settings.integrator.is_primary() { Some(&options_of) } else { None };
         let plans = plan.structures();
         let buffers = self.upload_ahead_of(scene, &plans, upload_watch, options_of).await?;
+        if !is_shaded {
+            let image = self.render_primary(&buffers, &view, None, layers, watch).await?;
+            return Ok(Picture::by_primary_rays(image));
+        }
         self.render_uploaded(&buffers, &view, settings, layers, watch).await
     }
 
@@ -96,9 +100,8 @@ impl Headless {
         watch: &mut Watch<'_>,
         mut traced: Option<&mut KeepHit<'_>>,
     ) -> Result<Image, GpuError> {
-        let PictureRequest { scene, view, settings, layers, .. } = request;
-        let layers = *layers;
-        let data_layers = layers != LayerSet::COLOR;
+        let PictureRequest { scene, view, settings, layers, is_shaded, .. } = request;
+        let (layers, what) = (*layers, ReadBack::new(*layers, *is_shaded));
         let (device, queue, film) = (self.device(), self.queue(), &view.film);
         let size = [film.width(), film.height()];
         let tile = Tile { origin: [0, 0], size, in_target: [0, 0] };
@@ -117,11 +120,11 @@ impl Headless {
             let mut scene = SceneBuffers::new_of(no_bricks, summary, ids.exclude_by, self.shape());
             let primary = scene.primary_settings(settings)?;
             let visible = VisibleBricks::of(view, &scene.space, &boxes);
-            let textures = scoped(device, || TileTextures::new(device, size, data_layers)).await?;
+            let textures = scoped(device, || TileTextures::new(device, size, what)).await?;
             let options = kinds.map(|structure| {
                 let kind = BrickKind { structure, primitive: Primitive::Sphere };
                 let options = self.options_of(&[kind], true, view.camera);
-                RendererOptions { data_layers, ..options }
+                RendererOptions { data_layers: what.has_data(), ..options }
             });
             let first = renderers.of(device, options[0].clone()).await?;
             let mut frame = Frame::new(first, device, &textures.targets()).await?;
@@ -172,7 +175,7 @@ impl Headless {
                     done.add(groups, watch)?;
                 }
                 // Pixels whose sphere a later brick hides will be shaded again.
-                let (mut encoder, noted) = self.shading(renderer, &scene, &frame, part.band)?;
+                let (mut encoder, noted) = self.shading(renderer, &scene, &frame, part.band, &textures)?;
                 if number + 1 == parts.len() {
                     self.run_timed(encoder, noted, &[]).await?;
                     break;
@@ -195,7 +198,8 @@ impl Headless {
             self.run(encoder, &mapped).await?;
             let mut image = Image::new(film.width(), film.height(), layers)?;
             let derived = DerivedLayers { view: *view, appearance: scene.appearance() };
-            textures.read_into(&mut image, tile, &derived)?;
+            let traced = parts.first().map_or(Groups::NONE, |first| frame.traced_groups(first.slot));
+            textures.read_into(&mut image, tile, traced, &derived)?;
             // If nothing was traced, the picture is complete only now.
             done.add(Groups::NONE, watch)?;
             Ok(image)

@@ -7,7 +7,8 @@ use crate::camera::View;
 use crate::camera::film::Film;
 use crate::gpu::device_shape::DeviceLimits;
 use crate::gpu::error::GpuError;
-use crate::gpu::headless::{readback, tile_plan};
+use crate::gpu::headless::readback::{self, ReadBack};
+use crate::gpu::headless::tile_plan;
 use crate::gpu::passes::bands::{BandBuffers, tile_size};
 use crate::gpu::passes::emitter_table;
 use crate::gpu::scene::appearance;
@@ -71,13 +72,15 @@ pub struct PictureRequest<'a> {
     pub host_bytes_per_pixel: u64,
     /// True if no other picture of the scene is wanted, or one more, so that nothing is kept for others.
     pub is_only: bool,
+    /// False for a picture by primary rays of which colours and normals are not wanted, and left at zero.
+    pub is_shaded: bool,
 }
 
 impl<'a> PictureRequest<'a> {
     /// A picture for which the caller needs no host memory beyond the image.
     #[must_use]
     pub fn new(scene: &'a Scene, view: &View<'a>, settings: &'a RenderSettings, layers: LayerSet) -> Self {
-        Self { scene, view: *view, settings, layers, host_bytes_per_pixel: 0, is_only: false }
+        Self { scene, view: *view, settings, layers, host_bytes_per_pixel: 0, is_only: false, is_shaded: true }
     }
 }
 
@@ -89,7 +92,8 @@ impl<'a> PictureRequest<'a> {
 
     /// The picture of ids from which a smooth picture follows.
     pub(crate) fn of_ids(&self, smooth: &SmoothPicture<'a>) -> Self {
-        Self { view: smooth.view_of_ids(), layers: smooth.layers(self.layers), ..*self }
+        let (layers, is_shaded) = smooth.layers(self.layers);
+        Self { view: smooth.view_of_ids(), layers, is_shaded, ..*self }
     }
 }
 
@@ -133,7 +137,7 @@ impl RenderPlan {
         let band = BandBuffers::new(limits, tile_size, keeps_rays);
         let tile_buffers = band.planned();
         let mut tile_textures = band.planned_read_back();
-        tile_textures.extend(readback::planned(tile_size, layers != LayerSet::COLOR));
+        tile_textures.extend(readback::planned(tile_size, ReadBack::new(layers, request.is_shaded || keeps_rays)));
         let scene_bytes = total(&scene_buffers);
         let tile_bytes = total(&tile_buffers) + total(&tile_textures);
         let in_host = |bytes| device.in_host(bytes);
@@ -329,6 +333,7 @@ mod tests {
             layers,
             host_bytes_per_pixel: 16,
             is_only: false,
+            is_shaded: true,
         };
         let device = DeviceLimits { limits: Limits::default(), device_type };
         RenderPlan::planned(&request, accel, &device, keeps_rays)

@@ -19,10 +19,11 @@ impl RenderPlan {
         if request.settings.integrator.is_primary() {
             Self::planned(request, structures.accel, device, false)
         } else if let Some(smooth) = request.smooth() {
-            let of_tables = smooth.bytes().div_ceil(request.view.film.pixel_count());
-            let host_bytes_per_pixel = request.host_bytes_per_pixel.saturating_add(of_tables);
-            let of_ids = PictureRequest { host_bytes_per_pixel, ..request.of_ids(&smooth) };
-            Self::planned(&of_ids, structures.accel, device, false)
+            let of_ids = request.of_ids(&smooth);
+            let of_caller = request.host_bytes_per_pixel.saturating_mul(request.view.film.pixel_count());
+            let bytes = smooth.bytes().saturating_add(of_caller);
+            let host_bytes_per_pixel = bytes.div_ceil(of_ids.view.film.pixel_count());
+            Self::planned(&PictureRequest { host_bytes_per_pixel, ..of_ids }, structures.accel, device, false)
         } else {
             Self::of_lit(request, structures, device)
         }
@@ -54,7 +55,7 @@ impl Headless {
         host_bytes_per_pixel: u64,
     ) -> RenderPlan {
         let (settings, layers) = (&RenderSettings::default(), LayerSet::DATA);
-        let request = PictureRequest { scene, view: *view, settings, layers, host_bytes_per_pixel, is_only: false };
+        let request = PictureRequest { host_bytes_per_pixel, ..PictureRequest::new(scene, view, settings, layers) };
         let accel = self.plan_accel(scene, choice);
         RenderPlan::planned(&request, accel, &self.device_limits(), true)
     }

@@ -8,7 +8,7 @@ use crate::gpu::checks::scoped;
 use crate::gpu::error::GpuError;
 use crate::gpu::headless::Headless;
 use crate::gpu::headless::progress::{TracedPixels, Watch};
-use crate::gpu::headless::readback::{DerivedLayers, ReadableTrace, TileTextures};
+use crate::gpu::headless::readback::{DerivedLayers, ReadBack, ReadableTrace, TileTextures};
 use crate::gpu::passes::bands::tile_size;
 use crate::gpu::passes::frame::{BandBrick, Frame};
 use crate::gpu::passes::renderer::Renderer;
@@ -58,21 +58,23 @@ impl Headless {
         }
     }
 
-    /// Renders a picture with a ray through the centre of every pixel.
+    /// Renders a picture with a ray through the centre of every pixel. Without `primary`, colours and normals are not
+    /// wanted.
     pub(crate) async fn render_primary(
         &self,
         scene: &SceneBuffers,
         view: &View<'_>,
-        primary: &PrimarySettings,
+        primary: Option<&PrimarySettings>,
         layers: LayerSet,
         watch: &mut Watch<'_>,
     ) -> Result<Image, GpuError> {
-        let data_layers = layers != LayerSet::COLOR;
-        let options = RendererOptions { data_layers, ..self.options_for(scene, view.camera) };
+        let what = ReadBack::new(layers, primary.is_some());
+        let options = RendererOptions { data_layers: what.has_data(), ..self.options_for(scene, view.camera) };
         self.with_renderer(options, async |renderer: &Renderer| {
             let mut image = Image::new(view.film.width(), view.film.height(), layers)?;
             let output = Output { image: &mut image, pixels: None };
-            self.render_tiles(renderer, scene, view, primary, output, watch).await?;
+            let primary = primary.copied().unwrap_or_default();
+            self.render_tiles(renderer, scene, view, (&primary, what), output, watch).await?;
             Ok(image)
         })
         .await
@@ -83,13 +85,13 @@ impl Headless {
         renderer: &Renderer,
         scene: &SceneBuffers,
         view: &View<'_>,
-        primary: &PrimarySettings,
+        (primary, what): (&PrimarySettings, ReadBack),
         mut output: Output<'_>,
         watch: &mut Watch<'_>,
     ) -> Result<(), GpuError> {
         let (device, film) = (self.device(), &view.film);
         let tile_size = tile_size(&device.limits(), self.shape(), film, renderer.keeps_rays);
-        let textures = scoped(device, || TileTextures::new(device, tile_size, renderer.data_layers)).await?;
+        let textures = scoped(device, || TileTextures::new(device, tile_size, what)).await?;
         let mut frame = Frame::new(renderer, device, &textures.targets()).await?;
         let traced = scoped(device, || ReadableTrace::new(device, &frame)).await?;
         let derived = DerivedLayers { view: *view, appearance: scene.appearance() };
@@ -119,7 +121,7 @@ impl Headless {
                     done.add(groups, watch)?;
                     (encoder, noted) = (self.encoder(), NotedPass::default());
                 }
-                if part.is_last_of_band {
+                if part.is_last_of_band && textures.are_shaded() {
                     let mut pass = begin_pass(&mut encoder, &mut noted, "shade");
                     renderer.record_shade(&mut pass, scene, &frame, part.band)?;
                 }
@@ -131,7 +133,8 @@ impl Headless {
             }
             self.submit_slice(encoder, noted, unfinished, scene, &mapped).await?;
             let _phase = self.phase("read back");
-            textures.read_into(output.image, tile, &derived)?;
+            let first = frame.parts().next().map_or(Groups::NONE, |part| frame.traced_groups(part.slot));
+            textures.read_into(output.image, tile, first, &derived)?;
             if let (Some(traced), Some(pixels)) = (&traced, &mut output.pixels) {
                 traced.read_into(pixels, film, tile)?;
             }
@@ -142,16 +145,19 @@ impl Headless {
 }
 
 impl Headless {
-    /// Begins commands with the shading of a band.
+    /// Begins commands with the shading of a band, if it is wanted.
     pub(crate) fn shading(
         &self,
         renderer: &Renderer,
         scene: &SceneBuffers,
         frame: &Frame,
         band: usize,
+        textures: &TileTextures,
     ) -> Result<(wgpu::CommandEncoder, NotedPass), GpuError> {
         let (mut encoder, mut noted) = (self.encoder(), NotedPass::default());
-        renderer.record_shade(&mut begin_pass(&mut encoder, &mut noted, "shade"), scene, frame, band)?;
+        if textures.are_shaded() {
+            renderer.record_shade(&mut begin_pass(&mut encoder, &mut noted, "shade"), scene, frame, band)?;
+        }
         Ok((encoder, noted))
     }
 }

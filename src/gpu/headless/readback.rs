@@ -8,12 +8,13 @@ use crate::camera::film::Film;
 use crate::gpu::error::GpuError;
 use crate::gpu::passes::frame::Frame;
 use crate::gpu::passes::targets::{DataTargets, Targets};
-use crate::gpu::passes::tiles::Tile;
+use crate::gpu::passes::tiles::{Groups, Tile};
 use crate::gpu::resources::{buffer, extent, texture};
 use crate::gpu::shader::formats::{ColorTarget, DEPTH_FORMAT, ID_FORMAT, NORMAL_FORMAT};
 use crate::gpu::shader::records::{self, NO_HIT};
 use crate::image::color::LinearRgb;
-use crate::image::{Image, NO_ID, RowMut, put};
+use crate::image::{Image, LayerSet, NO_ID, RowMut, put};
+use crate::parallel;
 use crate::recording::{TracedPixel, TracedRay};
 use crate::scene::SceneAppearance;
 
@@ -126,9 +127,27 @@ impl DerivedLayers<'_> {
         self.view.camera.ray_in_world(location).at(f64::from(t)).as_vec3().to_array()
     }
 
-    fn albedo(&self, id: u32) -> [f32; 3] {
-        let color = if id == NO_ID { None } else { self.appearance.color(id) };
-        color.map_or([0.0; 3], LinearRgb::to_array)
+    /// Sets the depth of a pixel, and what follows from it.
+    fn set_depth(&self, row: &mut RowMut<'_>, pixel: [usize; 2], t: f32) {
+        let is_miss = t >= NO_HIT;
+        put(&mut row.depth, pixel[0], if is_miss { f32::INFINITY } else { t });
+        if row.position.is_some() {
+            let point = if is_miss { [0.0; 3] } else { self.point(pixel, t) };
+            put(&mut row.position, pixel[0], point);
+        }
+    }
+
+    /// Sets the id of a pixel, and what follows from it.
+    fn set_id(&self, row: &mut RowMut<'_>, i: usize, id: u32) {
+        put(&mut row.id, i, id);
+        put(&mut row.alpha, i, RowMut::coverage(id));
+        if row.albedo.is_some() {
+            let color = if id == NO_ID { None } else { self.appearance.color(id) };
+            put(&mut row.albedo, i, color.map_or([0.0; 3], LinearRgb::to_array));
+        }
+        // Pixels have a single ray each.
+        put(&mut row.samples, i, 1);
+        put(&mut row.variance, i, 0.0);
     }
 }
 
@@ -144,9 +163,36 @@ const DATA: [TileTexture; 3] = [
     ("pinhole id", ID_FORMAT, ["id texture", "id read-back"]),
 ];
 
+/// What the host reads of a tile.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) enum ReadBack {
+    /// The hits, which are not shaded: there are no colours and no normals.
+    Hits,
+    Color,
+    Layers,
+}
+
+impl ReadBack {
+    pub(crate) fn new(layers: LayerSet, is_shaded: bool) -> Self {
+        match (is_shaded, layers == LayerSet::COLOR) {
+            (false, _) => Self::Hits,
+            (true, true) => Self::Color,
+            (true, false) => Self::Layers,
+        }
+    }
+
+    /// Whether kernels write textures of data layers.
+    pub(crate) fn has_data(self) -> bool {
+        self == Self::Layers
+    }
+}
+
 /// Sizes of the textures of a tile and of the buffers that they are copied to.
-pub(crate) fn planned(size: [u32; 2], data_layers: bool) -> Vec<PlannedBuffer> {
-    let textures = std::iter::once(COLOR).chain(DATA.into_iter().filter(|_| data_layers));
+pub(crate) fn planned(size: [u32; 2], what: ReadBack) -> Vec<PlannedBuffer> {
+    if what == ReadBack::Hits {
+        return vec![PlannedBuffer::one("hits read-back", hit_bytes(size))];
+    }
+    let textures = std::iter::once(COLOR).chain(DATA.into_iter().filter(|_| what.has_data()));
     let planned = textures.map(|(_, format, [texture, read_back])| {
         [
             PlannedBuffer::one(texture, ReadableTexture::texture_bytes(format, size)),
@@ -156,10 +202,17 @@ pub(crate) fn planned(size: [u32; 2], data_layers: bool) -> Vec<PlannedBuffer> {
     planned.flatten().collect()
 }
 
+/// Size of the hits of a tile in bytes.
+fn hit_bytes([width, height]: [u32; 2]) -> u64 {
+    u64::from(width) * u64::from(height) * size_of::<records::Hit>() as u64
+}
+
 /// The textures of a tile, with the buffers through which the host reads them.
 #[derive(Debug)]
 pub(crate) struct TileTextures {
     color: ReadableTexture,
+    /// The hits, if they are read instead of textures.
+    hits: Option<ReadableBuffer>,
     /// Depth, normal and id.
     data: Option<[ReadableTexture; 3]>,
     /// The buffer through which the host reads the status word of the kernels.
@@ -167,12 +220,14 @@ pub(crate) struct TileTextures {
 }
 
 impl TileTextures {
-    pub(crate) fn new(device: &Device, size: [u32; 2], data_layers: bool) -> Self {
+    pub(crate) fn new(device: &Device, size: [u32; 2], what: ReadBack) -> Self {
         let create = |(label, format, _): TileTexture| ReadableTexture::new(device, label, format, size);
         let status = size_of::<records::Status>() as u64;
         Self {
             color: create(COLOR),
-            data: data_layers.then(|| DATA.map(create)),
+            hits: (what == ReadBack::Hits)
+                .then(|| ReadableBuffer::new(device, "pinhole hits read-back", hit_bytes(size))),
+            data: what.has_data().then(|| DATA.map(create)),
             status: ReadableBuffer::new(device, "pinhole status", status),
         }
     }
@@ -183,18 +238,22 @@ impl TileTextures {
         Targets { color: &self.color.view, data }
     }
 
+    /// Whether the hits of a tile are shaded before they are read.
+    pub(crate) fn are_shaded(&self) -> bool {
+        self.hits.is_none()
+    }
+
     /// Records the copies of the part of a tile, and of the status word of its frame, to the buffers through which the
     /// host reads them. Returns these buffers, which must be mapped for [`TileTextures::read_into`].
     pub(crate) fn record_read_back(&self, encoder: &mut CommandEncoder, frame: &Frame, size: [u32; 2]) -> Vec<&Buffer> {
-        for texture in self.all() {
-            texture.record_copy(encoder, size);
-        }
         self.status.record_copy(encoder, frame.status());
-        self.all().map(|texture| &texture.back.buffer).chain([&self.status.buffer]).collect()
-    }
-
-    fn all(&self) -> impl Iterator<Item = &ReadableTexture> {
-        std::iter::once(&self.color).chain(self.data.iter().flatten())
+        if let Some(hits) = &self.hits {
+            hits.record_copy(encoder, frame.traced().0);
+            return vec![&hits.buffer, &self.status.buffer];
+        }
+        let all = || std::iter::once(&self.color).chain(self.data.iter().flatten());
+        all().for_each(|texture| texture.record_copy(encoder, size));
+        all().map(|texture| &texture.back.buffer).chain([&self.status.buffer]).collect()
     }
 
     /// Returns an error if rays took too many steps, according to the mapped status word.
@@ -206,13 +265,34 @@ impl TileTextures {
     }
 
     /// Copies the contents of the mapped buffers, and the layers that are derived from them, to the tile's part of the
-    /// image, and unmaps the buffers. Nothing is copied if rays took too many steps.
-    pub(crate) fn read_into(&self, image: &mut Image, tile: Tile, derived: &DerivedLayers<'_>) -> Result<(), GpuError> {
+    /// image, and unmaps the buffers. Nothing is copied if rays took too many steps. Hits are those of `traced` workgroups.
+    pub(crate) fn read_into(
+        &self,
+        image: &mut Image,
+        tile: Tile,
+        traced: Groups,
+        derived: &DerivedLayers<'_>,
+    ) -> Result<(), GpuError> {
         self.check_steps()?;
         let [x, y] = tile.origin.map(|start| start as usize);
         let [width, height] = tile.size.map(|side| side as usize);
         let columns = x..x + width;
         let mut rows = image.rows_mut(y..y + height);
+        if let Some(hits) = &self.hits {
+            return hits.read(|hits: &[records::Hit]| {
+                let [traced_columns, traced_rows] = traced.pixels_in(tile.size);
+                let with_hits = rows.iter_mut().zip(hits.chunks(width)).enumerate();
+                let traced = with_hits.filter(|(j, _)| traced_rows.contains(j)).collect();
+                parallel::for_each(traced, |(j, (row, hits)): (usize, (&mut RowMut<'_>, &[records::Hit]))| {
+                    for i in traced_columns.clone() {
+                        let [along, id, _, before] = hits[i];
+                        let t = if id == NO_ID { NO_HIT } else { f32::from_bits(before) + f32::from_bits(along) };
+                        derived.set_depth(row, [x + i, y + j], t);
+                        derived.set_id(row, x + i, id);
+                    }
+                });
+            });
+        }
         self.color.read_rows(tile.size, |j, rgba: &[[f32; 4]]| {
             for (pixel, [r, g, b, _]) in rows[j].color[columns.clone()].iter_mut().zip(rgba) {
                 *pixel = [*r, *g, *b];
@@ -222,14 +302,8 @@ impl TileTextures {
             return Ok(());
         };
         depth.read_rows(tile.size, |j, depths: &[f32]| {
-            let row = &mut rows[j];
             for (i, t) in columns.clone().zip(depths) {
-                let is_miss = *t >= NO_HIT;
-                put(&mut row.depth, i, if is_miss { f32::INFINITY } else { *t });
-                if row.position.is_some() {
-                    let point = if is_miss { [0.0; 3] } else { derived.point([i, y + j], *t) };
-                    put(&mut row.position, i, point);
-                }
+                derived.set_depth(&mut rows[j], [i, y + j], *t);
             }
         })?;
         normal.read_rows(tile.size, |j, normals: &[[f32; 4]]| {
@@ -238,16 +312,8 @@ impl TileTextures {
             }
         })?;
         id.read_rows(tile.size, |j, ids: &[u32]| {
-            let row = &mut rows[j];
             for (i, id) in columns.clone().zip(ids) {
-                put(&mut row.id, i, *id);
-                put(&mut row.alpha, i, RowMut::coverage(*id));
-                if row.albedo.is_some() {
-                    put(&mut row.albedo, i, derived.albedo(*id));
-                }
-                // Pixels have a single ray each.
-                put(&mut row.samples, i, 1);
-                put(&mut row.variance, i, 0.0);
+                derived.set_id(&mut rows[j], i, *id);
             }
         })
     }

@@ -8,6 +8,7 @@ use crate::gpu::error::{GpuError, check_whole};
 use crate::gpu::headless::plan::{PictureRequest, RenderPlan};
 use crate::gpu::headless::primary::Output;
 use crate::gpu::headless::progress::{Watch, go_on};
+use crate::gpu::headless::readback::ReadBack;
 use crate::gpu::headless::{Headless, retried};
 use crate::gpu::passes::renderer::Renderer;
 use crate::gpu::passes::renderer_options::RendererOptions;
@@ -90,7 +91,7 @@ impl Headless {
             let mut recording = new_recording(&scene.space, view, primary)?;
             let Recording { image, pixels, .. } = &mut recording;
             let output = Output { image, pixels: Some(pixels) };
-            self.render_tiles(renderer, scene, view, &primary, output, watch).await?;
+            self.render_tiles(renderer, scene, view, (&primary, ReadBack::Layers), output, watch).await?;
             Ok(recording)
         })
         .await

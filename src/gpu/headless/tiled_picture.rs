@@ -9,7 +9,7 @@ use crate::gpu::headless::Headless;
 use crate::gpu::headless::plan::{PictureRequest, RenderPlan};
 use crate::gpu::headless::primary::begin_pass;
 use crate::gpu::headless::progress::{TracedPixels, UploadProgress, UploadStep, UploadWatch, Watch};
-use crate::gpu::headless::readback::{DerivedLayers, ReadableBuffer, TileTextures};
+use crate::gpu::headless::readback::{DerivedLayers, ReadBack, ReadableBuffer, TileTextures};
 use crate::gpu::headless::renderers::Renderers;
 use crate::gpu::headless::tile_plan::{self, tile_view};
 use crate::gpu::passes::frame::{BandBrick, Frame};
@@ -21,7 +21,7 @@ use crate::gpu::profile::NotedPass;
 use crate::gpu::scene::scene_buffers::SceneBuffers;
 use crate::gpu::scene::scene_summary::{SceneSummary, ShapeIds};
 use crate::gpu::scene::scene_upload::{BrickSpace, SceneUpload, UploadedBricks};
-use crate::image::{Image, LayerSet};
+use crate::image::Image;
 
 impl Headless {
     /// Renders a picture by tiles.
@@ -32,13 +32,13 @@ impl Headless {
         upload_watch: &mut UploadWatch<'_>,
         watch: &mut Watch<'_>,
     ) -> Result<Image, GpuError> {
-        let PictureRequest { scene, view, settings, layers, .. } = request;
-        let data_layers = *layers != LayerSet::COLOR;
+        let PictureRequest { scene, view, settings, layers, is_shaded, .. } = request;
+        let what = ReadBack::new(*layers, *is_shaded);
         let (device, queue, film) = (self.device(), self.queue(), &view.film);
         let kind = BrickKind { structure: Structure::Tiles, primitive: Primitive::Sphere };
         let options_of = |several_bricks| {
             let options = self.options_of(&[kind], several_bricks, view.camera);
-            RendererOptions { data_layers, ..options }
+            RendererOptions { data_layers: what.has_data(), ..options }
         };
         let brick_space = BrickSpace { structure: kind.structure, bounds: plan.accel.statistics.inflated_bounds() };
         // In every brick, the nearest of equal spheres has the smallest id, so the ids of the input suffice.
@@ -59,7 +59,7 @@ impl Headless {
             let traced: u64 = tiles(film, plan.tile_size).map(|tile| visible.pixels_of(tile)).sum();
             let mut done = TracedPixels::of(traced + last.pixels());
             for tile in tiles(film, plan.tile_size) {
-                let textures = scoped(device, || TileTextures::new(device, tile.size, data_layers)).await?;
+                let textures = scoped(device, || TileTextures::new(device, tile.size, what)).await?;
                 let tiles = tile_view(view, &buffers.space, plan.accel.statistics.margin(), tile);
                 // Another structure is tried.
                 let Some(tiles) = tiles else { return Err(GpuError::Steps) };
@@ -85,7 +85,7 @@ impl Headless {
                     if let (true, Some((frame, part))) = (traced.listed() + brick.spheres.len() > most_listed, &frame) {
                         traced.upload(self, (&layouts, &ids), &mut buffers).await?;
                         let renderer = renderers.of(device, options_of(has_slabs || number > 1)).await?;
-                        let (encoder, noted) = self.shading(renderer, &buffers, frame, part.band)?;
+                        let (encoder, noted) = self.shading(renderer, &buffers, frame, part.band, &textures)?;
                         self.run_timed(encoder, noted, &[]).await?;
                         traced = traced.after();
                     }
@@ -129,11 +129,11 @@ impl Headless {
                 let Some((frame, part)) = &frame else { continue };
                 traced.upload(self, (&layouts, &ids), &mut buffers).await?;
                 let renderer = renderers.of(device, options_of(has_slabs || bricks.made() > 1)).await?;
-                let (mut encoder, noted) = self.shading(renderer, &buffers, frame, part.band)?;
+                let (mut encoder, noted) = self.shading(renderer, &buffers, frame, part.band, &textures)?;
                 let mapped = textures.record_read_back(&mut encoder, frame, tile.size);
                 self.run_timed(encoder, noted, &mapped).await?;
                 let derived = DerivedLayers { view: *view, appearance: buffers.appearance() };
-                textures.read_into(&mut image, tile, &derived)?;
+                textures.read_into(&mut image, tile, frame.traced_groups(part.slot), &derived)?;
             }
             done.add(last, watch)?;
             Ok(image)

@@ -54,11 +54,10 @@ pub(crate) fn rows_per_band(limits: &Limits, [width, height]: [u32; 2], keeps_ra
     ((pixels_per_band / u64::from(width)).max(1) as u32).min(height)
 }
 
-/// Size of the tiles of a headless render. If rays are kept, a tile is not larger than a band, because a frame keeps
-/// the rays of its last band only.
+/// Size of the tiles of a headless render. A tile is not larger than a band, because a frame keeps the hits and rays of its
+/// last band only.
 pub(crate) fn tile_size(limits: &Limits, shape: DeviceShape, film: &Film, keeps_rays: bool) -> [u32; 2] {
     let side_limit = limits.max_texture_dimension_2d;
     let [width, height] = tiles::tile_size(film, shape.max_tile_pixels, side_limit);
-    let rows = if keeps_rays { rows_per_band(limits, [width, height], true) } else { height };
-    [width, rows]
+    [width, rows_per_band(limits, [width, height], keeps_rays)]
 }

@@ -1,5 +1,7 @@
 //! Dividing a film into tiles, bands and rectangles of workgroups.
 
+use std::ops::Range;
+
 use crate::camera::film::Film;
 
 /// Maximum number of pixels of a band, whose hits share one buffer.
@@ -33,15 +35,19 @@ impl Groups {
         Self { first: [0, 0], size: pixels.map(|side| side.div_ceil(WORKGROUP_SIDE)) }
     }
 
-    /// The indices, row by row, of the pixels of a picture of this size that the workgroups cover.
-    pub(crate) fn indices(self, size: [u32; 2]) -> impl Iterator<Item = usize> {
-        let range = move |axis: usize| {
+    /// The columns and rows of the pixels of a picture of this size that the workgroups cover.
+    pub(crate) fn pixels_in(self, size: [u32; 2]) -> [Range<usize>; 2] {
+        [0, 1].map(|axis| {
             let (first, count) = (self.first[axis], self.size[axis]);
             let end = ((first + count) * WORKGROUP_SIDE).min(size[axis]);
             (first * WORKGROUP_SIDE).min(end) as usize..end as usize
-        };
-        let width = size[0] as usize;
-        range(1).flat_map(move |row| range(0).map(move |column| row * width + column))
+        })
+    }
+
+    /// The indices of these pixels, row by row.
+    pub(crate) fn indices(self, size: [u32; 2]) -> impl Iterator<Item = usize> {
+        let ([columns, rows], width) = (self.pixels_in(size), size[0] as usize);
+        rows.flat_map(move |row| columns.clone().map(move |column| row * width + column))
     }
 
     /// Number of workgroups.

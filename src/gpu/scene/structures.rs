@@ -111,6 +111,7 @@ mod tests {
             layers: LayerSet::COLOR,
             host_bytes_per_pixel: 0,
             is_only: false,
+            is_shaded: true,
         };
         let [accel, occluders] = choices.map(|choice| AccelPlan::new(scene.spheres(), choice, 1 << 27));
         let structures = StructurePlans { accel, occluders: Some(occluders) };

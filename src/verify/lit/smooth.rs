@@ -2,26 +2,32 @@
 //! rays through the centres of a pixel and its neighbours hit. Rounding may change those, and nothing else, because the
 //! same code draws every picture from them.
 
+use std::iter;
+
 use crate::image::NO_ID;
 use crate::parallel;
 use crate::recording::pixel_at;
 use crate::smooth::SmoothPicture;
+use crate::verify::camera::{AnyRay, CameraModel};
 use crate::verify::hit::LegalHits;
 use crate::verify::lit::check::LitCheck;
 use crate::verify::rounding::Interval;
 
-/// The most combinations of legal answers of nine rays that are drawn. Beyond that, nothing is said about a pixel.
+/// The most combinations of legal answers of the rays of a pixel that are drawn. Beyond that, nothing is said about a pixel.
 const MOST: usize = 64;
 
 impl LitCheck<'_> {
     /// The light of some pixels, by their indices, and their alpha, before lines are drawn; `None` for a pixel around which
     /// too many answers are legal.
     pub(crate) fn smooth_light(&self, smooth: &SmoothPicture<'_>, indices: &[usize]) -> Vec<Option<[Interval; 4]>> {
-        let ways = parallel::map(indices.len(), |at| self.ways(pixel_at(indices[at], self.inputs.size[0])));
+        let film = smooth.view_of_ids().film;
+        let model = CameraModel::new(self.inputs.camera.kind, &self.inputs.uploaded, &film);
+        let pixel = |index: usize| pixel_at(index, self.inputs.size[0]);
+        let ways = parallel::map(indices.len(), |at| self.ways(&smooth.places(pixel(indices[at])), &model));
         let all = indices
             .iter()
             .zip(&ways)
-            .flat_map(|(index, ways)| ways.iter().flatten().map(|ids| (pixel_at(*index, self.inputs.size[0]), *ids)));
+            .flat_map(|(index, ways)| ways.iter().flatten().map(|ids| (pixel(*index), ids.clone())));
         let drawn = smooth.pixels(&all.collect::<Vec<_>>());
         let mut left = drawn.iter();
         let joined = ways.iter().map(|ways| {
@@ -34,23 +40,20 @@ impl LitCheck<'_> {
         joined.collect()
     }
 
-    /// The ids that the pixels of three rows around a pixel may have, in every legal combination.
-    fn ways(&self, pixel: [u32; 2]) -> Option<Vec<[u32; 9]>> {
-        let [width, height] = self.inputs.size;
+    /// The ids at some places in every legal combination. Places outside of the picture have the id of the middle.
+    fn ways(&self, places: &[Option<[u32; 2]>], model: &CameraModel) -> Option<Vec<Vec<u32>>> {
+        let middle = places.len() / 2;
         let mut hits = LegalHits::default();
-        let mut ways = vec![[NO_ID; 9]];
-        // The middle is the first, because it stands for pixels outside of the picture.
-        for place in [4, 0, 1, 2, 3, 5, 6, 7, 8] {
-            let at = [0, 1].map(|axis| pixel[axis] as i64 + [place % 3, place / 3][axis] as i64 - 1);
-            let is_inside = (0..i64::from(width)).contains(&at[0]) && (0..i64::from(height)).contains(&at[1]);
-            let answers = is_inside.then(|| self.answers(at.map(|place| place as u32), &mut hits));
+        let mut ways = vec![vec![NO_ID; places.len()]];
+        for at in iter::once(middle).chain((0..places.len()).filter(|at| *at != middle)) {
+            let answers = places[at].map(|place| self.answers(model.ray(place).any(model), &mut hits));
             if answers.as_ref().is_some_and(|answers| answers.len() * ways.len() > MOST) {
                 return None;
             }
-            let with = |ids: [u32; 9]| {
-                answers.clone().unwrap_or_else(|| vec![ids[4]]).into_iter().map(move |id| {
-                    let mut ids = ids;
-                    ids[place] = id;
+            let with = |ids: Vec<u32>| {
+                answers.clone().unwrap_or_else(|| vec![ids[middle]]).into_iter().map(move |id| {
+                    let mut ids = ids.clone();
+                    ids[at] = id;
                     ids
                 })
             };
@@ -59,9 +62,8 @@ impl LitCheck<'_> {
         Some(ways)
     }
 
-    /// The ids that the ray through the centre of a pixel may give.
-    fn answers(&self, pixel: [u32; 2], hits: &mut LegalHits) -> Vec<u32> {
-        let ray = self.model.ray(pixel).any(&self.model);
+    /// The ids that a ray of the camera may give.
+    fn answers(&self, ray: AnyRay, hits: &mut LegalHits) -> Vec<u32> {
         let ray = ray.moved(self.moved(ray.line.origin));
         ray.find(&self.checker.candidates, hits);
         let missed = (hits.miss || hits.spheres.is_empty()).then_some(NO_ID);

@@ -76,6 +76,7 @@ pub(crate) struct OwnValues {
     pub(crate) occlusion_radius: bool,
     pub(crate) occlusion_samples: bool,
     pub(crate) smooth: bool,
+    pub(crate) dense: bool,
     pub(crate) denoise: bool,
     pub(crate) outline: bool,
     /// Whether a flag gives an outline, and the file does not.
@@ -89,8 +90,8 @@ pub(crate) struct OwnValues {
 /// The mean radius of spheres, in pixels, below which lines would hide what they are drawn around.
 const LEAST_RADIUS_IN_PIXELS: f64 = 3.0;
 
-/// The mean radius of spheres, in pixels, from which on few of them lie between the centres of pixels.
-const LEAST_RADIUS_OF_SMOOTH: f64 = 0.7;
+/// The mean radius of spheres, in pixels, from which on pixels and their neighbours show most spheres that they touch.
+const LEAST_RADIUS_OF_EDGES: f64 = 2.0;
 
 /// Chooses the values of a style for a scene and a view of it, except those that the scene file gives.
 pub(crate) fn fit(settings: &mut RenderSettings, style: Style, given: OwnValues, scene: &Scene, view: &View<'_>) {
@@ -108,8 +109,8 @@ pub(crate) fn fit(settings: &mut RenderSettings, style: Style, given: OwnValues,
     fit_smooth(settings, given, pixels, is_smooth);
 }
 
-/// Nothing is random, and no noise is removed, if the picture allows it, unless a number of random rays is asked for or
-/// spheres are so small that rays through the centres of pixels miss many.
+/// Nothing is random, and no noise is removed, if the picture allows it, unless a number of random rays is asked for. All
+/// pixels have several rays if spheres are small.
 fn fit_smooth(
     settings: &mut RenderSettings,
     given: OwnValues,
@@ -119,15 +120,16 @@ fn fit_smooth(
     if !settings.studio_parameters().is_some_and(|studio| studio.is_smooth) {
         return;
     }
-    let are_seen = radius_in_pixels.is_none_or(|radius| radius >= LEAST_RADIUS_OF_SMOOTH);
-    let is_refused = !given.smooth && (given.occlusion_samples || !are_seen);
+    let is_refused = !given.smooth && given.occlusion_samples;
     let denoise = settings.sampling.denoise;
     settings.sampling.denoise &= given.denoise;
-    if !is_refused && is_smooth(settings) {
-        return;
-    }
-    settings.sampling.denoise = denoise;
-    if let Integrator::Studio(studio) = &mut settings.integrator {
+    let is_smooth = !is_refused && is_smooth(settings);
+    let Integrator::Studio(studio) = &mut settings.integrator else { return };
+    if is_smooth {
+        let is_small = radius_in_pixels.is_some_and(|radius| radius < LEAST_RADIUS_OF_EDGES);
+        studio.is_dense = if given.dense { studio.is_dense } else { is_small };
+    } else {
+        settings.sampling.denoise = denoise;
         // What the file asks for stays, so that a note can say why it is not so.
         studio.is_smooth = given.smooth;
     }

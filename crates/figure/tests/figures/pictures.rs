@@ -534,7 +534,7 @@ fn strength(image: &Image, [a, b]: [usize; 2], outline: &Outline) -> f32 {
     }
     let least = outline.depth * depths[a].min(depths[b]);
     let jump = (depths[a] - depths[b]).abs();
-    if jump > least { ((jump - least) / (2.5 * least)).clamp(0.0, 1.0) } else { 0.0 }
+    if jump > least { ((jump - least) / (2.0 * least)).clamp(0.0, 1.0) } else { 0.0 }
 }
 
 /// The fraction of each pixel that lines cover. The middles of edges between pixels, in units of half a pixel, are

@@ -241,6 +241,7 @@ fn a_studio_with_everything_is_read_as_it_was_written() {
         outline: Some(Outline { angle: 0.1 + 0.2, ..Outline::thin() }),
         max_surfaces: 3,
         is_smooth: true,
+        is_dense: true,
         shadows: false,
     };
     let settings = RenderSettings { integrator: Integrator::Studio(studio), ..RenderSettings::studio() };

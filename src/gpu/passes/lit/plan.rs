@@ -114,7 +114,6 @@ mod tests {
     use crate::camera::film::Film;
     use crate::camera::{PinholeCamera, Pose, View};
     use crate::image::color::LinearRgb;
-    use crate::image::outline;
     use crate::image::{Layer, LayerSet};
     use crate::light::environment::Environment;
     use crate::light::{Sky, SkyLight};
@@ -138,6 +137,7 @@ mod tests {
         let device = DeviceLimits { limits: Limits::default(), device_type };
         let request = PictureRequest {
             is_only: false,
+            is_shaded: true,
             scene: &scene,
             view: View::new(&camera, film),
             settings,
@@ -222,7 +222,7 @@ mod tests {
         let studio = Studio { outline: Some(Outline::default()), ..Studio::default() };
         settings.integrator = Integrator::Studio(studio);
         let after = planned(1.0, 512, &settings, GPU);
-        let layers = outline::LAYERS.bytes_per_pixel() - Layer::Color.bytes_per_pixel();
+        let layers = Outline::default().layers().bytes_per_pixel() - Layer::Color.bytes_per_pixel();
         assert_eq!(after.host_bytes, before.host_bytes + (layers << 18));
     }
 

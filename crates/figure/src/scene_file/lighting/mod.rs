@@ -36,6 +36,7 @@ fn given(layers: &Joined<'_>) -> OwnValues {
         occlusion_radius: layers.has("studio.occlusion.radius"),
         occlusion_samples: layers.has("studio.occlusion.samples"),
         smooth: layers.has("studio.smooth"),
+        dense: layers.has("studio.dense"),
         denoise: layers.has("sampling.denoise"),
         outline: layers.in_file.has("studio.outline"),
         outline_by_flag: layers.in_flags.has("studio.outline"),
