@@ -3,13 +3,17 @@
 pub use crate::accel::grid::Grid;
 pub use crate::accel::slab::SMALLEST_COMPONENT;
 pub use crate::accel::wide_tree::{WideNode, WideTree};
+pub use crate::cpu::cone::intersect as intersect_cone;
 pub use crate::cpu::light::live::{LiveFrame, LiveReference};
+pub use crate::geometry::cone::Cone;
 #[cfg(feature = "gpu")]
 pub use crate::gpu::edit::{KernelRewrite, ShaderEdit};
 pub use crate::recording::NO_HIT;
+pub use crate::recording::cone_rays::{ConeAnswer, RayAndCone, rays_and_cones};
 pub use crate::recording::lit::{
     PathState, PixelSums, RecordedFilm, RecordedSurface, StudioLight, UploadedLighting, UploadedSky,
 };
+pub use crate::verify::cone::{LegalConeHit, LegalConeHits};
 
 /// Lists and tables of settings, read more strictly than serde does.
 pub mod exact {

@@ -2,6 +2,7 @@
 
 pub mod basis;
 pub mod bounds;
+pub(crate) mod cone;
 pub mod math;
 pub mod ray;
 pub mod subject;

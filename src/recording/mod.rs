@@ -1,5 +1,6 @@
 //! Recordings: the data that a device was given, and its results. Renderers write them, and the checker reads them.
 
+pub(crate) mod cone_rays;
 pub(crate) mod lighting;
 pub(crate) mod lit;
 

@@ -41,6 +41,7 @@ mod camera;
 mod certificate;
 mod checker;
 mod choices;
+pub(crate) mod cone;
 pub mod conformance;
 pub mod denoised;
 pub mod finished;

@@ -12,6 +12,7 @@ mod support;
 mod box_margin;
 mod camera;
 mod cameras;
+mod cone;
 mod conformance;
 mod framing;
 mod generate;

@@ -38,6 +38,7 @@ pub(crate) fn trials() -> Vec<Trial> {
         trial("plan::it_bounds_what_is_built", bounds),
         trial("self_test::the_adapter_has_all_properties", properties),
         trial("self_test::fences_that_a_driver_sees_through_are_found", seen_through),
+        trial("self_test::wrong_cones_are_found", wrong_cones),
         trial("device::pictures_do_not_depend_on_how_it_is_opened", opened_otherwise),
         trial("device_shape::a_picture_of_other_tiles_is_the_same", large),
     ]
@@ -196,7 +197,7 @@ fn large(_: &'static Headless) {
 const QUICK: &[&str] = &["fence", "add_multiply", "divide", "sqrt", "inverse_sqrt", "dot"];
 
 fn properties(headless: &'static Headless) {
-    let rest = ["subnormals", "comparison_and_conversion", "loops", "fence_in_trace"];
+    let rest = ["subnormals", "comparison_and_conversion", "cones", "loops", "fence_in_trace"];
     for (extent, rest) in [(SelfTestExtent::Quick, &[][..]), (SelfTestExtent::Full, &rest)] {
         let report = headless.self_test(extent).wait().unwrap();
         let names: Vec<_> = report.properties().iter().map(|property| property.name).collect();
@@ -208,6 +209,33 @@ fn properties(headless: &'static Headless) {
 fn fences_in_trace(headless: &Headless) -> TestedProperty {
     let report = headless.self_test(SelfTestExtent::Full).wait().unwrap();
     report.properties().iter().find(|property| property.name == "fence_in_trace").unwrap().clone()
+}
+
+/// Faults of the kernel that tests cones.
+fn wrong_cones(_: &'static Headless) {
+    for (fault, find, replace) in [
+        ("a disc that is not there", "let is_open_in = enters_disc &&", "let is_open_in = false &&"),
+        ("a closed disc that is left out", "let is_open_out = leaves_disc &&", "let is_open_out = leaves_disc ||"),
+        ("the other end's disc", "let is_up = risen > 0.0", "let is_up = risen < 0.0"),
+        ("a rim that is cut off", "let half = 0.5 * length", "let half = 0.499 * length"),
+        ("the radius of the other end", "let first = abs(cone.first_radius)", "let first = abs(cone.second_radius)"),
+        ("a slope that points the other way", "outward - hit.slope", "outward + hit.slope"),
+        ("the axis for the normal", "let on_side = select(normal", "let on_side = select(hit.axis"),
+        ("the other half of a cone", "select(-FAR, high, opens)", "select(high, -FAR, opens)"),
+        (
+            "only the far side",
+            "let t = select(select(NO_HIT, far, is_far), near, is_near)",
+            "let t = select(NO_HIT, far, is_far)",
+        ),
+        ("the root of another equation", "- side * side)", "- 1.001 * side * side)"),
+    ] {
+        let edit =
+            ShaderEdit { file: "scene/cone.wgsl".to_owned(), find: find.to_owned(), replace: replace.to_owned() };
+        let options = HeadlessOptions { edits: vec![edit], ..HeadlessOptions::default() };
+        let report = Headless::open(&options).wait().unwrap().self_test(SelfTestExtent::Full).wait().unwrap();
+        let failed: Vec<_> = report.properties().iter().filter(|tested| !tested.passed()).map(|t| t.name).collect();
+        assert_eq!(failed, ["cones"], "{fault}");
+    }
 }
 
 /// A driver that assumes that the zero of fences is constant, only in kernels that trace rays.

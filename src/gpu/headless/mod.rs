@@ -180,7 +180,7 @@ impl Headless {
     pub async fn self_test(&self, extent: SelfTestExtent) -> Result<SelfTestReport, GpuError> {
         let report = self
             .alone(async |_: &mut Renderers| {
-                let run = SelfTestRun::new(&self.device, extent).await?;
+                let run = SelfTestRun::new(&self.device, extent, &self.edits).await?;
                 let mut encoder = self.encoder();
                 run.record(&mut encoder);
                 self.run(encoder, &run.buffers()).await?;

@@ -52,7 +52,7 @@ pub(crate) fn all_sources() -> Vec<Kernel> {
 
 /// All kernels of which pipelines are made. Many have the same source and differ in constants.
 pub(crate) fn all_kernels() -> Vec<Kernel> {
-    let mut kernels = ["arithmetic", "exact", "loops"].map(|probe| Kernel::new(probe, &[])).to_vec();
+    let mut kernels = ["arithmetic", "exact", "cones", "loops"].map(|probe| Kernel::new(probe, &[])).to_vec();
     for &camera in CameraKind::ALL {
         for kind in BrickKind::of(Structure::WITH_KERNELS, Primitive::ALL) {
             for brick_pass in [BrickPass::First, BrickPass::Later] {

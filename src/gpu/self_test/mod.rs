@@ -6,6 +6,7 @@
 
 #![expect(clippy::float_cmp, reason = "the self-test compares numbers for equality")]
 
+mod cones;
 #[cfg(test)]
 mod fault_tests;
 pub(super) mod fence_probe;

@@ -4,19 +4,24 @@ use bytemuck::{Pod, bytes_of, cast_slice};
 use wgpu::{BindGroup, Buffer, BufferUsages, CommandEncoder, ComputePipeline, Device};
 
 use crate::gpu::checks::Checks;
+use crate::gpu::edit::Edits;
 use crate::gpu::error::GpuError;
 use crate::gpu::headless::readback::ReadableBuffer;
 use crate::gpu::passes::frame::iteration_limit;
 use crate::gpu::resources::{buffer, numbered_group};
 use crate::gpu::self_test::records::{Arithmetic, Exact, Loop, Operands, SelfTest, Values};
 use crate::gpu::self_test::report::{SelfTestExtent, SelfTestReport};
-use crate::gpu::self_test::{loops, records, rounding};
+use crate::gpu::self_test::{cones, loops, records, rounding};
 use crate::gpu::shader::layouts::{layout, storage, uniform};
 use crate::gpu::shader::{Kernel, pipeline};
+use crate::recording::cone_rays::{ConeAnswer, RayAndCone, rays_and_cones};
 
 /// Number of inputs of each operation, in a quick and in a full test. Both are multiples of the workgroup size.
 const QUICK: usize = 512;
 const FULL: usize = 1 << 17;
+
+/// Number of rays and cones in a full test.
+const CONES: usize = 1 << 16;
 
 const WORKGROUP: u32 = 64;
 
@@ -25,29 +30,33 @@ const WORKGROUP: u32 = 64;
 pub(crate) struct SelfTestRun {
     operands: Vec<Operands>,
     values: Vec<Values>,
+    rays_and_cones: Vec<RayAndCone>,
     limit: u32,
     /// Dispatches of operations that round. In a full test, dispatches of exact operations and of loops follow.
     dispatches: Vec<Dispatch>,
 }
 
 impl SelfTestRun {
-    pub(crate) async fn new(device: &Device, extent: SelfTestExtent) -> Result<Self, GpuError> {
+    pub(crate) async fn new(device: &Device, extent: SelfTestExtent, edits: &Edits) -> Result<Self, GpuError> {
         let (checks, limit) = (Checks::default(), iteration_limit(device));
         let is_full = extent == SelfTestExtent::Full;
         let count = if is_full { FULL } else { QUICK };
         let (operands, values) = (records::operands(count), records::values(count));
+        let rays_and_cones = rays_and_cones(if is_full { CONES } else { 0 });
         let once = [SelfTest::default()];
-        let mut all = dispatches::<_, Arithmetic>(device, &checks, "arithmetic", &once, &operands);
+        let kernel = |entry_point| Kernel::new(entry_point, &[]).edited(edits);
+        let mut all = dispatches::<_, Arithmetic>(device, &checks, &kernel("arithmetic")?, &once, &operands);
         if is_full {
-            let exact = dispatches::<_, Exact>(device, &checks, "exact", &once, &values);
+            let exact = dispatches::<_, Exact>(device, &checks, &kernel("exact")?, &once, &values);
+            let cones = dispatches::<_, ConeAnswer>(device, &checks, &kernel("cones")?, &once, &rays_and_cones);
             // Only the number of inputs matters, because the kernel does not read them.
             let inputs = [0_u32; loops::INVOCATIONS as usize];
             let runs = loops::runs(limit);
-            let loops = dispatches::<_, Loop>(device, &checks, "loops", &runs, &inputs);
-            all.extend(exact.into_iter().chain(loops));
+            let loops = dispatches::<_, Loop>(device, &checks, &kernel("loops")?, &runs, &inputs);
+            all.extend(exact.into_iter().chain(cones).chain(loops));
         }
         checks.passed().await?;
-        Ok(Self { operands, values, limit, dispatches: all })
+        Ok(Self { operands, values, rays_and_cones, limit, dispatches: all })
     }
 
     pub(crate) fn record(&self, encoder: &mut CommandEncoder) {
@@ -62,8 +71,9 @@ impl SelfTestRun {
     /// Judges the results of the device.
     pub(crate) fn judge(&self) -> Result<SelfTestReport, GpuError> {
         let mut properties = rounding::judge(&self.operands, &self.dispatches[0].read()?);
-        if let [_, exact, loops @ ..] = &self.dispatches[..] {
+        if let [_, exact, cones, loops @ ..] = &self.dispatches[..] {
             properties.extend(rounding::judge_exact(&self.values, &exact.read()?));
+            properties.push(cones::judge(&self.rays_and_cones, &cones.read()?));
             let answers = loops.iter().map(Dispatch::read).collect::<Result<Vec<_>, _>>()?;
             properties.push(loops::judge(self.limit, &answers));
         }
@@ -86,14 +96,14 @@ struct Dispatch {
 fn dispatches<Input: Pod, Answer: Pod>(
     device: &Device,
     checks: &Checks,
-    entry_point: &'static str,
+    kernel: &Kernel,
     records: &[SelfTest],
     inputs: &[Input],
 ) -> Vec<Dispatch> {
     let label = "pinhole self-test";
     let kinds = [uniform::<SelfTest>(), storage::<Input>(true), storage::<Answer>(false)];
     let layout = checks.create(device, || layout(device, label, &kinds));
-    let pipeline = pipeline(device, &Kernel::new(entry_point, &[]), &[&layout], checks);
+    let pipeline = pipeline(device, kernel, &[&layout], checks);
     let filled = |bytes: &[u8], usage| {
         let buffer = device.create_buffer(&wgpu::BufferDescriptor {
             label: Some(label),
@@ -150,9 +160,9 @@ mod tests {
     #[test]
     fn every_kernel_is_accepted_by_a_device_with_webgpu_limits() {
         let (device, _) = Device::noop(&wgpu::DeviceDescriptor::default());
-        let run = SelfTestRun::new(&device, SelfTestExtent::Full).wait().unwrap();
-        assert_eq!(run.buffers().len(), 5);
-        let run = SelfTestRun::new(&device, SelfTestExtent::Quick).wait().unwrap();
+        let run = SelfTestRun::new(&device, SelfTestExtent::Full, &Edits::default()).wait().unwrap();
+        assert_eq!(run.buffers().len(), 6);
+        let run = SelfTestRun::new(&device, SelfTestExtent::Quick, &Edits::default()).wait().unwrap();
         assert_eq!(run.buffers().len(), 1);
     }
 }

@@ -204,6 +204,7 @@ mod tests {
     use crate::gpu::passes::lit::records::{DispatchParameters, LightingParameters};
     use crate::gpu::scene::recolor::RecolorRange;
     use crate::gpu::self_test::records::{Arithmetic, Exact, Loop, Operands, SelfTest, Values};
+    use crate::recording::cone_rays::{ConeAnswer, RayAndCone};
 
     /// The name, offset and size of every field, and the size of the struct.
     type Layout = (Vec<(String, usize, usize)>, usize);
@@ -320,6 +321,8 @@ mod tests {
                 tiny_product,
                 tiny_sum
             }),
+            layout!(RayAndCone { origin, direction, cone }),
+            layout!(ConeAnswer { normal, t }),
             layout!(Loop { count, state }),
             layout!(Denoise { size, step, zero }),
             layout!(HostView { column, is_parallel, row, slope, forward, far, film_depth, zero, size, first_pixel }),

@@ -1,0 +1,40 @@
+//! Cones and cylinders.
+
+use bytemuck::{Pod, Zeroable};
+use glam::DVec3;
+
+use crate::geometry::math::wide;
+
+/// The part of a cone between two discs around its axis, in a frame with f32 numbers. A cylinder has two equal radii.
+///
+/// Each end is closed by its disc, or open, so that the inside is seen. The names are those of Embree and of ANARI's
+/// `cone` and `cylinder`. Twin: `Shape` in `shaders/scene/cone.wgsl`.
+#[repr(C)]
+#[derive(Clone, Copy, Debug, PartialEq, Pod, Zeroable)]
+pub struct Cone {
+    /// The middle of the first disc.
+    pub start: [f32; 3],
+    /// The radius of the first disc, with a minus sign if that end is open.
+    pub first_radius: f32,
+    /// The middle of the second disc.
+    pub end: [f32; 3],
+    /// The radius of the second disc, with a minus sign if that end is open.
+    pub second_radius: f32,
+}
+
+impl Cone {
+    /// The middles of the discs.
+    pub(crate) fn ends(&self) -> [DVec3; 2] {
+        [wide(self.start), wide(self.end)]
+    }
+
+    /// The radii of the discs.
+    pub(crate) fn radii(&self) -> [f64; 2] {
+        [self.first_radius, self.second_radius].map(|radius| radius.abs().into())
+    }
+
+    /// Whether the start and the end are closed.
+    pub(crate) fn are_closed(&self) -> [bool; 2] {
+        [self.first_radius, self.second_radius].map(f32::is_sign_positive)
+    }
+}

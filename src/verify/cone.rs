@@ -1,0 +1,224 @@
+//! The check of the cone test: every legal result of `intersect` and of `cone_normal` in `shaders/scene/cone.wgsl`. The
+//! lines of the kernel are followed number by number (`verify/number`). Decisions that bounds leave open are followed
+//! both ways.
+
+use crate::geometry::cone::Cone;
+use crate::recording::NO_HIT;
+use crate::verify::choices::Choices;
+use crate::verify::number::{Number, Vector};
+use crate::verify::rounding::Interval;
+
+const FAR: f64 = 1e30_f32 as f64;
+const LEAST_RISE: f64 = 1.0 / (1_u64 << 40) as f64;
+const LEAST_SQUARE: f64 = 1.0 / (1_u64 << 34) as f64;
+const LEAST_LENGTH: f64 = 1e-37_f32 as f64;
+
+/// A hit that a device may have.
+#[derive(Clone, Copy, Debug)]
+pub struct LegalConeHit {
+    /// The distance.
+    pub t: Interval,
+    /// The unit normal.
+    pub normal: [Interval; 3],
+    /// Whether the ray enters there, and whether it crosses a disc.
+    place: [bool; 2],
+}
+
+/// All legal answers to a ray and a cone.
+#[derive(Clone, Debug, Default)]
+pub struct LegalConeHits {
+    /// The hits, one for each combination of open decisions.
+    pub hits: Vec<LegalConeHit>,
+    /// Whether a miss is legal.
+    pub may_miss: bool,
+    /// Whether so many decisions are open that anything is legal.
+    pub is_open: bool,
+}
+
+impl LegalConeHits {
+    /// The legal answers of a device to a ray with these numbers.
+    #[must_use]
+    pub fn new(origin: [f32; 3], direction: [f32; 3], cone: &Cone) -> Self {
+        let mut legal = Self::default();
+        let mut choices = Choices::default();
+        loop {
+            match hit(origin, direction, cone, &mut choices) {
+                Some(hit) => legal.hits.push(hit),
+                None => legal.may_miss = true,
+            }
+            if !choices.advance() {
+                break;
+            }
+        }
+        legal.is_open = choices.were_too_many();
+        legal
+    }
+
+    /// Whether a device may have a hit at this distance with this normal, or a miss if the distance is
+    /// [`NO_HIT`](crate::recording::NO_HIT).
+    #[must_use]
+    pub fn allows(&self, t: f32, normal: [f32; 3]) -> bool {
+        let is_of = |hit: &LegalConeHit| {
+            let are_in = hit.normal.iter().zip(normal).all(|(legal, c)| legal.contains(c.into()));
+            hit.t.contains(t.into()) && are_in
+        };
+        self.is_open || if t >= NO_HIT { self.may_miss } else { self.hits.iter().any(is_of) }
+    }
+
+    /// Whether only one answer is legal, apart from its numbers.
+    #[must_use]
+    pub fn is_decided(&self) -> bool {
+        let is_same_place = |hit: &LegalConeHit| hit.place == self.hits[0].place;
+        !self.is_open && self.may_miss == self.hits.is_empty() && self.hits.iter().all(is_same_place)
+    }
+}
+
+/// The answer of the kernel for one combination of open decisions. `None` for a miss.
+fn hit(origin: [f32; 3], direction: [f32; 3], cone: &Cone, choices: &mut Choices) -> Option<LegalConeHit> {
+    let (zero, one, two, half) = (Number::ZERO, Number::ONE, Number::TWO, Number::HALF);
+    let [origin, direction, start, end] = [origin, direction, cone.start, cone.end].map(Vector::recorded);
+    let [first, second] = [cone.first_radius, cone.second_radius].map(|radius| Number::recorded(radius.abs()));
+    let span = (end - start).fence();
+    let length = span.dot(span).fence().max(Number::known(LEAST_LENGTH)).sqrt().fence();
+    let axis = span.map(|c| c / length).fence();
+    let half_length = half * length;
+    let slope = ((second - first).fence() / length).fence();
+    let to_middle = ((start - origin).fence() + span * half).fence();
+    let b = to_middle.dot(direction).fence();
+    let foot = (direction * b - to_middle).fence();
+    let height = foot.dot(axis).fence();
+    let rise = direction.dot(axis).fence();
+    let away = (foot - axis * height).fence();
+    let aside = (direction - axis * rise).fence();
+    let radius = (half * (first + second) + slope * height).fence();
+    let growth = (slope * rise).fence();
+
+    let least = Number::known(LEAST_SQUARE);
+    let Slab { enters: slab_in, leaves: slab_out, is_up } = Slab::new(rise, height, half_length, choices);
+
+    let across = cross(direction, axis).fence();
+    let sine = across.squared().fence();
+    let side = foot.dot(across).fence();
+    let tilt = away.dot(aside).fence();
+    let square = away.squared().fence();
+    let a = (sine - growth.squared()).fence();
+    let half_b = (tilt - radius * growth).fence();
+    let c = (square - radius.squared()).fence();
+    let of_cylinder = (sine * radius * radius - side.squared()).fence();
+    let discriminant = (of_cylinder + growth * (growth * square - two * tilt * radius).fence()).fence();
+    let root = discriminant.max(zero).sqrt();
+    let is_flat = choices.decide(a.abs().is_less(least));
+    let limited = |s: Number| s.clamp(-FAR, FAR);
+    let far = Number::known(FAR);
+    // The lower and the higher root, for either sign of `half_b` that it may have.
+    let roots = || {
+        let of_sign = |sum: Number| {
+            let sum = sum.fence();
+            let second = match sum.is_zero() {
+                true if is_flat => limited(-c * Number::known(FAR)),
+                true => zero,
+                false => limited(-c / sum),
+            };
+            let first = match sum.is_less(zero) {
+                _ if !is_flat => limited(-sum / a),
+                Some(true) => far,
+                Some(false) => -far,
+                None => far.union(-far),
+            };
+            (first.min(second), first.max(second))
+        };
+        let (negative, positive) = (|| of_sign(half_b - root), || of_sign(half_b + root));
+        match half_b.is_less(zero) {
+            Some(true) => negative(),
+            Some(false) => positive(),
+            None => {
+                let ((a, b), (c, d)) = (negative(), positive());
+                (a.union(c), b.union(d))
+            }
+        }
+    };
+    let is_steep = !is_flat && choices.decide(a.is_less(zero));
+    let (side_in, side_out) = if is_steep {
+        let (low, high) = roots();
+        if choices.decide(growth.is_above_zero()) { (high, far) } else { (-far, low) }
+    } else {
+        roots()
+    };
+    let is_met = is_steep || is_flat || !choices.decide(discriminant.is_less(zero));
+    if !is_met {
+        return None;
+    }
+
+    let enters_disc = choices.decide(slab_in.is_more(side_in));
+    let leaves_disc = choices.decide(slab_out.is_less(side_out));
+    let enters = if enters_disc { slab_in } else { side_in };
+    let leaves = if leaves_disc { slab_out } else { side_out };
+    if choices.decide(leaves.is_less(enters)) {
+        return None;
+    }
+    let [start_is_closed, end_is_closed] = cone.are_closed();
+    let is_up = !(enters_disc || leaves_disc) || choices.decide(is_up);
+    let (closed_in, closed_out) =
+        if is_up { (start_is_closed, end_is_closed) } else { (end_is_closed, start_is_closed) };
+    let [near, far] = [b + enters, b + leaves];
+    let is_near = (closed_in || !enters_disc) && choices.decide(near.is_above_zero());
+    if !is_near && !((closed_out || !leaves_disc) && choices.decide(far.is_above_zero())) {
+        return None;
+    }
+    let (t, from_foot, is_disc) = if is_near { (near, enters, enters_disc) } else { (far, leaves, leaves_disc) };
+    let normal = if is_disc {
+        if is_near == is_up { -axis } else { axis }
+    } else {
+        let outward = (away + aside * from_foot).fence();
+        let radius = (radius + from_foot * growth).fence();
+        let normal = (outward - axis * (slope * radius)).fence();
+        let square = normal.squared().fence();
+        if choices.decide(square.is_less(Number::known(LEAST_LENGTH))) {
+            if choices.decide(slope.is_above_zero()) { -axis } else { axis }
+        } else {
+            let length = square.sqrt();
+            normal.map(|c| (c / length).clamp(-1.0 - 1e-5, 1.0 + 1e-5))
+        }
+    };
+    let above_zero = Interval { low: 0.0, high: f64::INFINITY };
+    let normal = (normal * one).fence().intervals();
+    Some(LegalConeHit { t: t.interval().intersection(above_zero), normal, place: [is_near, is_disc] })
+}
+
+/// Where a ray enters and leaves the slab between the planes of the discs.
+struct Slab {
+    enters: Number,
+    leaves: Number,
+    /// Whether the ray enters at the plane of the start; `None` if undecided.
+    is_up: Option<bool>,
+}
+
+impl Slab {
+    fn new(rise: Number, height: Number, half_length: Number, choices: &mut Choices) -> Self {
+        let least = Number::known(LEAST_RISE);
+        let at = |risen: Number| [-half_length - height, half_length - height].map(|way| way / risen);
+        let Interval { low, high } = rise.interval();
+        let is_less = rise.abs().is_less(least);
+        let steepest = low.abs().max(high.abs()).max(LEAST_RISE);
+        let [below, above] = [half_length + height, half_length - height].map(|room| room.interval().low / steepest);
+        if is_less.is_none() && low < 0.0 && high > 0.0 && below > 0.0 && above > 0.0 {
+            // The planes are far away on both sides, whichever way the ray goes.
+            let beyond = below.min(above) * (1.0 - 1e-5);
+            return Self {
+                enters: Number::between(-FAR * FAR, -beyond),
+                leaves: Number::between(beyond, FAR * FAR),
+                is_up: None,
+            };
+        }
+        let is_down = || rise.is_less(Number::ZERO);
+        let risen = if choices.decide(is_less) { if choices.decide(is_down()) { -least } else { least } } else { rise };
+        let is_up = choices.decide(risen.is_above_zero());
+        let [at_start, at_end] = at(risen);
+        let (enters, leaves) = if is_up { (at_start, at_end) } else { (at_end, at_start) };
+        Self { enters, leaves, is_up: Some(is_up) }
+    }
+}
+
+fn cross(Vector([a, b, c]): Vector, Vector([p, q, r]): Vector) -> Vector {
+    Vector([b * r - c * q, c * p - a * r, a * q - b * p])
+}
