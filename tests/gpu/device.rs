@@ -213,24 +213,30 @@ fn fences_in_trace(headless: &Headless) -> TestedProperty {
 
 /// Faults of the kernel that tests cones.
 fn wrong_cones(_: &'static Headless) {
-    for (fault, find, replace) in [
-        ("a disc that is not there", "let is_open_in = enters_disc &&", "let is_open_in = false &&"),
-        ("a closed disc that is left out", "let is_open_out = leaves_disc &&", "let is_open_out = leaves_disc ||"),
-        ("the other end's disc", "let is_up = risen > 0.0", "let is_up = risen < 0.0"),
-        ("a rim that is cut off", "let half = 0.5 * length", "let half = 0.499 * length"),
-        ("the radius of the other end", "let first = abs(cone.first_radius)", "let first = abs(cone.second_radius)"),
-        ("a slope that points the other way", "outward - hit.slope", "outward + hit.slope"),
-        ("the axis for the normal", "let on_side = select(normal", "let on_side = select(hit.axis"),
-        ("the other half of a cone", "select(-FAR, high, opens)", "select(high, -FAR, opens)"),
+    let (cone, side) = ("scene/cone.wgsl", "scene/cone_side.wgsl");
+    for (fault, file, find, replace) in [
+        ("a disc that is not there", cone, "let is_open_in = enters_disc &&", "let is_open_in = false &&"),
         (
-            "only the far side",
-            "let t = select(select(NO_HIT, far, is_far), near, is_near)",
-            "let t = select(NO_HIT, far, is_far)",
+            "a closed disc that is left out",
+            cone,
+            "let is_open_out = leaves_disc &&",
+            "let is_open_out = leaves_disc ||",
         ),
-        ("the root of another equation", "- side * side)", "- 1.001 * side * side)"),
+        ("the other end's disc", cone, "let is_up = risen > 0.0", "let is_up = risen < 0.0"),
+        ("a rim that is cut off", cone, "let at_end = (seen.half", "let at_end = (0.998 * seen.half"),
+        (
+            "the radius of the other end",
+            side,
+            "let first = abs(cone.first_radius)",
+            "let first = abs(cone.second_radius)",
+        ),
+        ("a slope that points the other way", cone, "outward - seen.slope", "outward + seen.slope"),
+        ("the axis for the normal", cone, "let on_side = select(normal", "let on_side = select(seen.axis"),
+        ("the other half of a cone", side, "select(-FAR, high, opens)", "select(high, -FAR, opens)"),
+        ("only the far side", cone, "far, is_far), near, is_near)", "far, is_far), far, is_near)"),
+        ("the root of another equation", side, "- side * side)", "- 1.001 * side * side)"),
     ] {
-        let edit =
-            ShaderEdit { file: "scene/cone.wgsl".to_owned(), find: find.to_owned(), replace: replace.to_owned() };
+        let edit = ShaderEdit { file: file.to_owned(), find: find.to_owned(), replace: replace.to_owned() };
         let options = HeadlessOptions { edits: vec![edit], ..HeadlessOptions::default() };
         let report = Headless::open(&options).wait().unwrap().self_test(SelfTestExtent::Full).wait().unwrap();
         let failed: Vec<_> = report.properties().iter().filter(|tested| !tested.passed()).map(|t| t.name).collect();

@@ -69,7 +69,7 @@ fn self_test(headless: &'static Headless) {
     let tested = &info["self_test"];
     assert_eq!((&tested["adapter"]["name"], &tested["passed"]), (&name.as_str().into(), &true.into()));
     let properties = tested["properties"].as_array().unwrap();
-    assert_eq!(properties.len(), 10);
+    assert_eq!(properties.len(), 11);
     let output = succeed(&mut command(&folder, "info --self-test"));
     let text = String::from_utf8(output.stdout).unwrap();
     assert!(text.contains(name), "{text}");

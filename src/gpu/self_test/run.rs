@@ -44,15 +44,16 @@ impl SelfTestRun {
         let (operands, values) = (records::operands(count), records::values(count));
         let rays_and_cones = rays_and_cones(if is_full { CONES } else { 0 });
         let once = [SelfTest::default()];
-        let kernel = |entry_point| Kernel::new(entry_point, &[]).edited(edits);
-        let mut all = dispatches::<_, Arithmetic>(device, &checks, &kernel("arithmetic")?, &once, &operands);
+        let kernel = |entry_point| Kernel::new(entry_point, &[]);
+        let mut all = dispatches::<_, Arithmetic>(device, &checks, &kernel("arithmetic"), &once, &operands);
         if is_full {
-            let exact = dispatches::<_, Exact>(device, &checks, &kernel("exact")?, &once, &values);
-            let cones = dispatches::<_, ConeAnswer>(device, &checks, &kernel("cones")?, &once, &rays_and_cones);
+            let exact = dispatches::<_, Exact>(device, &checks, &kernel("exact"), &once, &values);
+            let cones =
+                dispatches::<_, ConeAnswer>(device, &checks, &kernel("cones").edited(edits)?, &once, &rays_and_cones);
             // Only the number of inputs matters, because the kernel does not read them.
             let inputs = [0_u32; loops::INVOCATIONS as usize];
             let runs = loops::runs(limit);
-            let loops = dispatches::<_, Loop>(device, &checks, &kernel("loops")?, &runs, &inputs);
+            let loops = dispatches::<_, Loop>(device, &checks, &kernel("loops"), &runs, &inputs);
             all.extend(exact.into_iter().chain(cones).chain(loops));
         }
         checks.passed().await?;

@@ -44,7 +44,7 @@ const FILES: &[(&str, &str)] = files! {
         "start" "state" "surface_point" "vertex" "whole_paths";
     "primary": "color_target" "data_layers" "denoise" "entry" "hit_before" "hits" "schedule" "shade"
         "shade_entry" "shading" "status" "trace" "trace_tile";
-    "scene": "appearance" "appearance_words" "cone" "emitter" "emitters" "enter" "environment" "frame" "lamp"
+    "scene": "appearance" "appearance_words" "cone" "cone_side" "emitter" "emitters" "enter" "environment" "frame" "lamp"
         "lighting" "lighting_records" "material" "recolor" "records" "sky" "sphere";
     "self_test": "arithmetic" "cones" "exact" "loops" "records";
     "studio": "ambient" "ambient_light" "catcher" "faded" "gather" "hidden_light" "hide" "illuminate"

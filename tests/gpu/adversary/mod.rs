@@ -9,7 +9,7 @@ use std::sync::LazyLock;
 use libtest_mimic::{Failed, Trial};
 use pinhole::accel::{AccelChoice, AccelPlan};
 use pinhole::camera::{PinholeCamera, Pose};
-use pinhole::gpu::{Headless, HeadlessOptions, SampleRequest, Wait};
+use pinhole::gpu::{Headless, HeadlessOptions, SampleRequest, SelfTestExtent, Wait};
 use pinhole::verify::{Certificate, Checker, Deviations, LARGEST_MEAN, LitCertificate, LitRecording, Outcome};
 use pinhole::{Film, LinearRgb, RenderSettings, Scene, View};
 
@@ -52,6 +52,15 @@ fn open(adversary: Adversary) -> Result<Headless, String> {
     Headless::open(&options).wait().map_err(|error| error.to_string())
 }
 
+/// Judges where a device finds hits of rays with cones.
+fn cones(adversary: Adversary) -> Result<(), Failed> {
+    let report = open(adversary)?.self_test(SelfTestExtent::Full).wait()?;
+    match report.properties().iter().find(|property| property.name == "cones") {
+        Some(cones) if cones.passed() => Ok(()),
+        other => Err(format!("{other:?}").into()),
+    }
+}
+
 pub(crate) fn trials() -> Vec<Trial> {
     let mut trials = Vec::new();
     for rounding in Rounding::ALL {
@@ -61,6 +70,14 @@ pub(crate) fn trials() -> Vec<Trial> {
             Ok(())
         }));
     }
+    for rounding in Rounding::ALL {
+        let name = format!("adversary::cones::{rounding:?}").to_lowercase();
+        trials.push(Trial::test(name, move || cones(Adversary::new(rounding, 2))));
+    }
+    trials.push(Trial::test("adversary::cones::wrong", || match cones(Adversary { fault: FAULT, ..ALL }) {
+        Ok(()) => Err("wrong results are legal".into()),
+        Err(_) => Ok(()),
+    }));
     for (name, view) in scenes::all() {
         trials.push(Trial::test(format!("adversary::primary::{name}"), move || {
             let certificate = certify(&PRIMARY, &view, RENDERED.contains(&name))?;
