@@ -8,7 +8,7 @@ use crate::geometry::ray::Ray;
 /// The distance to the cone's first point in front of the ray's origin, and the unit normal there, which points away from
 /// the axis, or from the other end. `None` for a miss.
 ///
-/// What the side and the discs enclose is convex, so a ray enters once and leaves once: after it has entered both the
+/// The side and the discs enclose a convex body, so a ray enters once and leaves once: after it has entered both the
 /// infinite cone, whose points have |p|² ≤ r², where p is the vector from the axis and r the radius there, and the slab
 /// between the planes of the discs, and before it leaves one of them. Crossings of open discs are no hits. Distances are
 /// computed from the point of the ray that is nearest to the middle of the axis, so that a distant origin costs no digits.

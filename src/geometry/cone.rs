@@ -33,7 +33,7 @@ impl Cone {
         [self.first_radius, self.second_radius].map(|radius| radius.abs().into())
     }
 
-    /// Whether the start and the end are closed.
+    /// True for each end, the first and the second, that is closed.
     pub(crate) fn are_closed(&self) -> [bool; 2] {
         [self.first_radius, self.second_radius].map(f32::is_sign_positive)
     }

@@ -22,7 +22,7 @@ pub struct RayAndCone {
     pub cone: Cone,
 }
 
-/// What a device answers: the unit normal, and the distance, or [`NO_HIT`](crate::recording::NO_HIT).
+/// An answer of a device: the unit normal, and the distance, or [`NO_HIT`](crate::recording::NO_HIT).
 #[repr(C)]
 #[derive(Clone, Copy, Debug, Pod, Zeroable)]
 pub struct ConeAnswer {

@@ -200,7 +200,7 @@ impl<'a> Finder<'a> {
         Some(self.spot(pixel, &self.hit(pixel, DVec2::ZERO, id)?, 1))
     }
 
-    /// Where a ray hits a sphere that a device found.
+    /// The hit of a ray on a sphere that a device found.
     fn hit(&self, pixel: [u32; 2], offset: DVec2, id: u32) -> Option<Hits> {
         let ray = self.ray(pixel, offset).filter(|_| id != NO_ID)?;
         let (center, radius) = sphere(self.spheres, id);

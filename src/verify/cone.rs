@@ -8,10 +8,11 @@ use crate::verify::choices::Choices;
 use crate::verify::number::{Number, Vector};
 use crate::verify::rounding::Interval;
 
-const FAR: f64 = 1e30_f32 as f64;
-const LEAST_RISE: f64 = 1.0 / (1_u64 << 40) as f64;
-const LEAST_SQUARE: f64 = 1.0 / (1_u64 << 34) as f64;
-const LEAST_LENGTH: f64 = 1e-37_f32 as f64;
+/// Constants of the kernel, by their names there.
+pub(crate) const FAR: f32 = 1e30;
+pub(crate) const LEAST_RISE: f32 = 1.0 / (1_u64 << 40) as f32;
+pub(crate) const LEAST_SQUARE: f32 = 1.0 / (1_u64 << 34) as f32;
+pub(crate) const LEAST_LENGTH: f32 = 1e-37;
 
 /// A hit that a device may have.
 #[derive(Clone, Copy, Debug)]
@@ -20,7 +21,7 @@ pub struct LegalConeHit {
     pub t: Interval,
     /// The unit normal.
     pub normal: [Interval; 3],
-    /// Whether the ray enters there, and whether it crosses a disc.
+    /// True if the ray enters there, and true if it crosses a disc.
     place: [bool; 2],
 }
 
@@ -29,9 +30,9 @@ pub struct LegalConeHit {
 pub struct LegalConeHits {
     /// The hits, one for each combination of open decisions.
     pub hits: Vec<LegalConeHit>,
-    /// Whether a miss is legal.
+    /// True if a miss is legal.
     pub may_miss: bool,
-    /// Whether so many decisions are open that anything is legal.
+    /// True if so many decisions are open that anything is legal.
     pub is_open: bool,
 }
 
@@ -54,7 +55,7 @@ impl LegalConeHits {
         legal
     }
 
-    /// Whether a device may have a hit at this distance with this normal, or a miss if the distance is
+    /// Returns true if a device may have a hit at this distance with this normal, or a miss if the distance is
     /// [`NO_HIT`](crate::recording::NO_HIT).
     #[must_use]
     pub fn allows(&self, t: f32, normal: [f32; 3]) -> bool {
@@ -65,7 +66,7 @@ impl LegalConeHits {
         self.is_open || if t >= NO_HIT { self.may_miss } else { self.hits.iter().any(is_of) }
     }
 
-    /// Whether only one answer is legal, apart from its numbers.
+    /// Returns true if only one answer is legal, apart from its numbers.
     #[must_use]
     pub fn is_decided(&self) -> bool {
         let is_same_place = |hit: &LegalConeHit| hit.place == self.hits[0].place;
@@ -75,11 +76,11 @@ impl LegalConeHits {
 
 /// The answer of the kernel for one combination of open decisions. `None` for a miss.
 fn hit(origin: [f32; 3], direction: [f32; 3], cone: &Cone, choices: &mut Choices) -> Option<LegalConeHit> {
-    let (zero, one, two, half) = (Number::ZERO, Number::ONE, Number::TWO, Number::HALF);
+    let (zero, two, half) = (Number::ZERO, Number::TWO, Number::HALF);
     let [origin, direction, start, end] = [origin, direction, cone.start, cone.end].map(Vector::recorded);
     let [first, second] = [cone.first_radius, cone.second_radius].map(|radius| Number::recorded(radius.abs()));
     let span = (end - start).fence();
-    let length = span.dot(span).fence().max(Number::known(LEAST_LENGTH)).sqrt().fence();
+    let length = span.dot(span).fence().max(Number::known(LEAST_LENGTH.into())).sqrt().fence();
     let axis = span.map(|c| c / length).fence();
     let half_length = half * length;
     let slope = ((second - first).fence() / length).fence();
@@ -93,7 +94,7 @@ fn hit(origin: [f32; 3], direction: [f32; 3], cone: &Cone, choices: &mut Choices
     let radius = (half * (first + second) + slope * height).fence();
     let growth = (slope * rise).fence();
 
-    let least = Number::known(LEAST_SQUARE);
+    let least = Number::known(LEAST_SQUARE.into());
     let Slab { enters: slab_in, leaves: slab_out, is_up } = Slab::new(rise, height, half_length, choices);
 
     let across = cross(direction, axis).fence();
@@ -108,44 +109,42 @@ fn hit(origin: [f32; 3], direction: [f32; 3], cone: &Cone, choices: &mut Choices
     let discriminant = (of_cylinder + growth * (growth * square - two * tilt * radius).fence()).fence();
     let root = discriminant.max(zero).sqrt();
     let is_flat = choices.decide(a.abs().is_less(least));
-    let limited = |s: Number| s.clamp(-FAR, FAR);
-    let far = Number::known(FAR);
+    let far = Number::known(FAR.into());
+    let limited = |s: Number| s.max(-far).min(far);
     // The lower and the higher root, for either sign of `half_b` that it may have.
-    let roots = || {
-        let of_sign = |sum: Number| {
-            let sum = sum.fence();
-            let second = match sum.is_zero() {
-                true if is_flat => limited(-c * Number::known(FAR)),
-                true => zero,
-                false => limited(-c / sum),
-            };
-            let first = match sum.is_less(zero) {
-                _ if !is_flat => limited(-sum / a),
-                Some(true) => far,
-                Some(false) => -far,
-                None => far.union(-far),
-            };
-            (first.min(second), first.max(second))
+    let of_sign = |sum: Number| {
+        let sum = sum.fence();
+        let second = match sum.is_zero() {
+            true if is_flat => limited(-c * far),
+            true => zero,
+            false => limited(-c / sum),
         };
-        let (negative, positive) = (|| of_sign(half_b - root), || of_sign(half_b + root));
-        match half_b.is_less(zero) {
-            Some(true) => negative(),
-            Some(false) => positive(),
-            None => {
-                let ((a, b), (c, d)) = (negative(), positive());
-                (a.union(c), b.union(d))
-            }
+        let first = match sum.is_less(zero) {
+            _ if !is_flat => limited(-sum / a),
+            Some(true) => far,
+            Some(false) => -far,
+            None => far.union(-far),
+        };
+        (first.min(second), first.max(second))
+    };
+    let (negative, positive) = (|| of_sign(half_b - root), || of_sign(half_b + root));
+    let (low, high) = match half_b.is_less(zero) {
+        Some(true) => negative(),
+        Some(false) => positive(),
+        None => {
+            let ((a, b), (c, d)) = (negative(), positive());
+            (a.union(c), b.union(d))
         }
     };
     let is_steep = !is_flat && choices.decide(a.is_less(zero));
-    let (side_in, side_out) = if is_steep {
-        let (low, high) = roots();
-        if choices.decide(growth.is_above_zero()) { (high, far) } else { (-far, low) }
+    let (side_in, side_out) = if !is_steep {
+        (low, high)
+    } else if choices.decide(growth.is_above_zero()) {
+        (high, far)
     } else {
-        roots()
+        (-far, low)
     };
-    let is_met = is_steep || is_flat || !choices.decide(discriminant.is_less(zero));
-    if !is_met {
+    if !is_steep && !is_flat && choices.decide(discriminant.is_less(zero)) {
         return None;
     }
 
@@ -173,7 +172,7 @@ fn hit(origin: [f32; 3], direction: [f32; 3], cone: &Cone, choices: &mut Choices
         let radius = (radius + from_foot * growth).fence();
         let normal = (outward - axis * (slope * radius)).fence();
         let square = normal.squared().fence();
-        if choices.decide(square.is_less(Number::known(LEAST_LENGTH))) {
+        if choices.decide(square.is_less(Number::known(LEAST_LENGTH.into()))) {
             if choices.decide(slope.is_above_zero()) { -axis } else { axis }
         } else {
             let length = square.sqrt();
@@ -181,34 +180,32 @@ fn hit(origin: [f32; 3], direction: [f32; 3], cone: &Cone, choices: &mut Choices
         }
     };
     let above_zero = Interval { low: 0.0, high: f64::INFINITY };
-    let normal = (normal * one).fence().intervals();
+    let normal = normal.fence().intervals();
     Some(LegalConeHit { t: t.interval().intersection(above_zero), normal, place: [is_near, is_disc] })
 }
 
-/// Where a ray enters and leaves the slab between the planes of the discs.
+/// The crossing of the slab between the planes of the discs by a ray.
 struct Slab {
     enters: Number,
     leaves: Number,
-    /// Whether the ray enters at the plane of the start; `None` if undecided.
+    /// True if the ray enters at the plane of the start; `None` if undecided.
     is_up: Option<bool>,
 }
 
 impl Slab {
     fn new(rise: Number, height: Number, half_length: Number, choices: &mut Choices) -> Self {
-        let least = Number::known(LEAST_RISE);
+        let least = Number::known(LEAST_RISE.into());
         let at = |risen: Number| [-half_length - height, half_length - height].map(|way| way / risen);
         let Interval { low, high } = rise.interval();
         let is_less = rise.abs().is_less(least);
-        let steepest = low.abs().max(high.abs()).max(LEAST_RISE);
+        let steepest = low.abs().max(high.abs()).max(LEAST_RISE.into());
         let [below, above] = [half_length + height, half_length - height].map(|room| room.interval().low / steepest);
         if is_less.is_none() && low < 0.0 && high > 0.0 && below > 0.0 && above > 0.0 {
             // The planes are far away on both sides, whichever way the ray goes.
             let beyond = below.min(above) * (1.0 - 1e-5);
-            return Self {
-                enters: Number::between(-FAR * FAR, -beyond),
-                leaves: Number::between(beyond, FAR * FAR),
-                is_up: None,
-            };
+            let farthest = f64::from(FAR).powi(2);
+            let (enters, leaves) = (Number::between(-farthest, -beyond), Number::between(beyond, farthest));
+            return Self { enters, leaves, is_up: None };
         }
         let is_down = || rise.is_less(Number::ZERO);
         let risen = if choices.decide(is_less) { if choices.decide(is_down()) { -least } else { least } } else { rise };

@@ -13,7 +13,7 @@ use crate::gpu::headless::progress::{Picture, TracedPixels, UploadProgress, Uplo
 use crate::gpu::headless::readback::{DerivedLayers, ReadBack, ReadableBuffer, TileTextures};
 use crate::gpu::headless::renderers::Renderers;
 use crate::gpu::headless::uploading::OptionsOf;
-use crate::gpu::passes::bands::{rows_per_band, tile_size};
+use crate::gpu::passes::bands::tile_size;
 use crate::gpu::passes::frame::{BandBrick, Frame};
 use crate::gpu::passes::renderer_options::RendererOptions;
 use crate::gpu::passes::tiles::{Groups, Tile, WORKGROUP_SIDE, tiles};
@@ -87,7 +87,6 @@ impl Headless {
             && plan.accel.brick_count > 1
             && plan.accel.structure != Structure::List
             && plan.tile_size == size
-            && rows_per_band(&self.device().limits(), size, false) == size[1]
     }
 
     /// Renders a picture whose hits are in one buffer. Copies the hits of the pixels that were traced to `traced`, by
@@ -227,9 +226,7 @@ impl Headless {
         let mut whole = NearestPicture::misses([film.width(), film.height()], layers)?;
         let limits = self.device().limits();
         // The hits of a tile are in one buffer.
-        let [width, height] = tile_size(&limits, self.shape(), film, false);
-        let rows = rows_per_band(&limits, [width, height], false);
-        for tile in tiles(film, [width, rows]) {
+        for tile in tiles(film, tile_size(&limits, self.shape(), film, false)) {
             let part = film.part(tile.origin, tile.size)?;
             let pixels = part.pixel_count() as usize;
             let mut t = vec![f64::INFINITY; pixels];

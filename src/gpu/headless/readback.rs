@@ -163,7 +163,7 @@ const DATA: [TileTexture; 3] = [
     ("pinhole id", ID_FORMAT, ["id texture", "id read-back"]),
 ];
 
-/// What the host reads of a tile.
+/// The data that the host reads of a tile.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) enum ReadBack {
     /// The hits, which are not shaded: there are no colours and no normals.
@@ -181,7 +181,7 @@ impl ReadBack {
         }
     }
 
-    /// Whether kernels write textures of data layers.
+    /// True if kernels write textures of data layers.
     pub(crate) fn has_data(self) -> bool {
         self == Self::Layers
     }
@@ -238,7 +238,7 @@ impl TileTextures {
         Targets { color: &self.color.view, data }
     }
 
-    /// Whether the hits of a tile are shaded before they are read.
+    /// True if the hits of a tile are shaded before they are read.
     pub(crate) fn are_shaded(&self) -> bool {
         self.hits.is_none()
     }

@@ -15,6 +15,7 @@ use crate::gpu::shader::records;
 use crate::image::NO_ID;
 use crate::image::color::LUMINANCE;
 use crate::light::codes;
+use crate::verify::cone;
 
 /// The bits of each component of a constant.
 type Bits = Vec<u32>;
@@ -87,6 +88,10 @@ fn of_the_host() -> Vec<(&'static str, Bits)> {
     let floats = [
         ("NO_HIT", records::NO_HIT),
         ("SMALLEST_COMPONENT", accel::slab::SMALLEST_COMPONENT),
+        ("FAR", cone::FAR),
+        ("LEAST_RISE", cone::LEAST_RISE),
+        ("LEAST_SQUARE", cone::LEAST_SQUARE),
+        ("LEAST_LENGTH", cone::LEAST_LENGTH),
         ("PI", std::f32::consts::PI),
         ("QUANTA", accel::ball::QUANTA),
     ];
@@ -113,11 +118,6 @@ const OF_KERNELS_ALONE: &[&str] = &[
     "NOTHING",
     "SAME_VIEW",
     "SMALLEST_SPOT",
-    // Limits in the test of cones, whose twin in the checker is in f64.
-    "FAR",
-    "LEAST_LENGTH",
-    "LEAST_RISE",
-    "LEAST_SQUARE",
     // The reference has this constant in f64.
     "NO_NOISE",
     // Slots of a path's state, and flags in it.
