@@ -2,7 +2,7 @@
 
 use glam::DVec3;
 
-use crate::geometry::cone::Cone;
+use crate::geometry::cone::ConeInFrame;
 use crate::geometry::ray::Ray;
 
 /// The distance to the cone's first point in front of the ray's origin, and the unit normal there, which points away from
@@ -13,7 +13,7 @@ use crate::geometry::ray::Ray;
 /// between the planes of the discs, and before it leaves one of them. Crossings of open discs are no hits. Distances are
 /// computed from the point of the ray that is nearest to the middle of the axis, so that a distant origin costs no digits.
 #[must_use]
-pub fn intersect(ray: &Ray, cone: &Cone) -> Option<(f64, DVec3)> {
+pub fn intersect(ray: &Ray, cone: &ConeInFrame) -> Option<(f64, DVec3)> {
     let ([start, end], [first, second]) = (cone.ends(), cone.radii());
     let length = (end - start).length();
     let axis = (end - start) / length;
@@ -74,9 +74,9 @@ mod tests {
 
     #[test]
     fn known_answers() {
-        let cylinder = Cone { start: [0.0; 3], first_radius: 1.0, end: [0.0, 0.0, 4.0], second_radius: 1.0 };
-        let open = Cone { first_radius: -1.0, second_radius: -1.0, ..cylinder };
-        let pointed = Cone { first_radius: 2.0, second_radius: 0.0, ..cylinder };
+        let cylinder = ConeInFrame { start: [0.0; 3], first_radius: 1.0, end: [0.0, 0.0, 4.0], second_radius: 1.0 };
+        let open = ConeInFrame { first_radius: -1.0, second_radius: -1.0, ..cylinder };
+        let pointed = ConeInFrame { first_radius: 2.0, second_radius: 0.0, ..cylinder };
         let slanted = unit(DVec3::new(2.0, 0.0, 1.0)).unwrap();
         for (case, cone, ray, t, normal) in [
             ("the side", cylinder, from(5.0, 0.0, 1.0, -DVec3::X), 4.0, DVec3::X),

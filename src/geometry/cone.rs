@@ -11,7 +11,7 @@ use crate::geometry::math::wide;
 /// `cone` and `cylinder`. Twin: `Shape` in `shaders/scene/cone.wgsl`.
 #[repr(C)]
 #[derive(Clone, Copy, Debug, PartialEq, Pod, Zeroable)]
-pub struct Cone {
+pub struct ConeInFrame {
     /// The middle of the first disc.
     pub start: [f32; 3],
     /// The radius of the first disc, with a minus sign if that end is open.
@@ -22,7 +22,7 @@ pub struct Cone {
     pub second_radius: f32,
 }
 
-impl Cone {
+impl ConeInFrame {
     /// The middles of the discs.
     pub(crate) fn ends(&self) -> [DVec3; 2] {
         [wide(self.start), wide(self.end)]
@@ -31,6 +31,20 @@ impl Cone {
     /// The radii of the discs.
     pub(crate) fn radii(&self) -> [f64; 2] {
         [self.first_radius, self.second_radius].map(|radius| radius.abs().into())
+    }
+
+    /// The largest n·p of all its points p.
+    pub(crate) fn support(&self, n: DVec3) -> f64 {
+        let ([start, end], [first, second]) = (self.ends(), self.radii());
+        let axis = (end - start).normalize_or_zero();
+        let across = (n - n.dot(axis) * axis).length();
+        (n.dot(start) + across * first).max(n.dot(end) + across * second)
+    }
+
+    /// The corners of its bounding box.
+    pub(crate) fn corners(&self) -> [DVec3; 2] {
+        let reach = |sign: f64| DVec3::from(DVec3::AXES.map(|axis| sign * self.support(sign * axis)));
+        [reach(-1.0), reach(1.0)]
     }
 
     /// True for each end, the first and the second, that is closed.

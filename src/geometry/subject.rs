@@ -3,6 +3,7 @@
 use glam::DVec3;
 
 use crate::geometry::bounds::Bounds;
+use crate::geometry::cone::ConeInFrame;
 use crate::parallel;
 
 /// The spheres, or the box, that a camera frames so that all of it is in the picture.
@@ -12,6 +13,8 @@ pub struct Subject<'a> {
     origin: DVec3,
     /// Centres in that frame, and radii. If there are no spheres, the box is framed.
     spheres: &'a [[f32; 4]],
+    /// Cones in that frame.
+    cones: &'a [ConeInFrame],
     /// The number of added spheres, which come after the spheres of the data.
     added: usize,
     bounds: Bounds,
@@ -43,7 +46,12 @@ impl<'a> Subject<'a> {
     /// A subject of spheres in a frame: centre (x, y, z) relative to `origin`, and radius. `bounds` is their box, which
     /// is framed if there are no spheres.
     pub(crate) fn spheres(origin: DVec3, spheres: &'a [[f32; 4]], bounds: Bounds) -> Self {
-        Self { origin, spheres, added: 0, bounds, free_sides: [0.0; 4], whole: None }
+        Self { origin, spheres, cones: &[], added: 0, bounds, free_sides: [0.0; 4], whole: None }
+    }
+
+    /// The subject with cones.
+    pub(crate) fn with_cones(self, cones: &'a [ConeInFrame]) -> Self {
+        Self { cones, ..self }
     }
 
     /// The subject whose last `added` spheres are framed but do not affect the style.
@@ -88,9 +96,9 @@ impl<'a> Subject<'a> {
         self.bounds
     }
 
-    /// Whether there are no spheres, so that the box itself is framed.
+    /// Whether there are no shapes, so that the box itself is framed.
     pub(crate) fn is_box(&self) -> bool {
-        self.spheres.is_empty()
+        self.spheres.is_empty() && self.cones.is_empty()
     }
 
     /// The spheres that may reach farthest in some direction, with some others. [`Subject::supports`] returns the same for
@@ -134,21 +142,25 @@ impl<'a> Subject<'a> {
     }
 
     /// The subject with other spheres.
-    pub(crate) fn with_spheres<'b>(&self, spheres: &'b [[f32; 4]]) -> Subject<'b> {
+    pub(crate) fn with_spheres<'b>(&self, spheres: &'b [[f32; 4]]) -> Subject<'b>
+    where
+        'a: 'b,
+    {
         Subject { spheres, ..*self }
     }
 
     /// The reach of the subject along each direction, measured from the middle of its box. It is the largest n·p of all
     /// its points p. The directions need not have unit length.
     ///
-    /// This is the support function. For a sphere with the centre c and the radius r it is n·c + |n|·r.
+    /// This is the support function. For a sphere with the centre c and the radius r it is n·c + |n|·r, and for a disc with
+    /// the unit normal a it is n·c + |n − (n·a) a|·r.
     #[must_use]
     pub fn supports<const N: usize>(&self, directions: [DVec3; N]) -> [f64; N] {
         let center = self.bounds.center();
         let lengths = directions.map(DVec3::length);
         let most = |a: [f64; N], b: [f64; N]| std::array::from_fn(|i| a[i].max(b[i]));
         let nothing = [f64::NEG_INFINITY; N];
-        if self.spheres.is_empty() {
+        if self.is_box() {
             let corners = self.bounds.corners().map(|corner| corner - center);
             return corners.map(|corner| directions.map(|n| n.dot(corner))).into_iter().fold(nothing, most);
         }
@@ -160,7 +172,13 @@ impl<'a> Subject<'a> {
                 most(reach, std::array::from_fn(|i| directions[i].dot(c) + lengths[i] * radius))
             })
         };
-        parallel::map_chunks(self.spheres, of_chunk).into_iter().fold(nothing, most)
+        let reach = parallel::map_chunks(self.spheres, of_chunk).into_iter().fold(nothing, most);
+        let of_cones = |_, chunk: &[ConeInFrame]| {
+            chunk.iter().fold(nothing, |reach, cone| {
+                most(reach, directions.map(|n| n.dot(shift) + cone.support(n)))
+            })
+        };
+        parallel::map_chunks(self.cones, of_cones).into_iter().fold(reach, most)
     }
 
     /// The axis (0, 1 or 2) along which all centres of the data's spheres lie in one plane, if there is exactly one.

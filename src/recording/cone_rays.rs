@@ -4,7 +4,7 @@ use bytemuck::{Pod, Zeroable};
 use glam::DVec3;
 
 use crate::generate::Uniform;
-use crate::geometry::cone::Cone;
+use crate::geometry::cone::ConeInFrame;
 use crate::parallel;
 
 /// Twin: the struct of the same name in `shaders/self_test/cones.wgsl`, as [`ConeAnswer`]. A ray, and the cone that it is
@@ -19,7 +19,7 @@ pub struct RayAndCone {
     pub direction: [f32; 3],
     _pad2: u32,
     /// The cone.
-    pub cone: Cone,
+    pub cone: ConeInFrame,
 }
 
 /// An answer of a device: the unit normal, and the distance, or [`NO_HIT`](crate::recording::NO_HIT).
@@ -108,7 +108,7 @@ pub fn rays_and_cones(count: usize) -> Vec<RayAndCone> {
         RayAndCone {
             origin: narrow(origin),
             direction: narrow(direction),
-            cone: Cone {
+            cone: ConeInFrame {
                 start: narrow(start),
                 first_radius: (signs[0] * radii[0]) as f32,
                 end: narrow(end),

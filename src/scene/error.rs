@@ -1,5 +1,6 @@
 //! Errors of spheres and appearances that do not make a scene.
 
+use super::cone::ConeError;
 use super::sphere::SphereError;
 
 /// The reason why spheres and an appearance do not make a scene.
@@ -13,6 +14,14 @@ pub enum SceneError {
         index: usize,
         /// The problem of the sphere.
         error: SphereError,
+    },
+    /// A cone or cylinder is out of range.
+    #[error("cone {index}: {error}")]
+    Cone {
+        /// Index among the cones, in input order.
+        index: usize,
+        /// The problem of the cone.
+        error: ConeError,
     },
     /// There is not enough memory for all spheres.
     #[error("there is not enough memory for {count} spheres, which need {} bytes", count * 16)]

@@ -3,8 +3,11 @@
 
 use glam::{DVec3, Vec3};
 
+use super::cone::Cone;
 use super::error::SceneError;
+use super::shared::SharedShapes;
 use crate::geometry::bounds::Bounds;
+use crate::geometry::cone::ConeInFrame;
 use crate::parallel;
 use crate::scene::sphere::{self, Sphere};
 
@@ -16,16 +19,40 @@ pub(super) fn f64_parts(sphere: &Sphere) -> [f64; 4] {
     [x, y, z, sphere.radius]
 }
 
+/// Returns an error for more shapes than there are ids.
+pub(super) fn check_count(count: usize) -> Result<(), SceneError> {
+    let most = u32::MAX;
+    match count < most as usize {
+        true => Ok(()),
+        false => {
+            Err(SceneError::Invalid(format!("{count} spheres are too many; ids are u32 and {most} means a miss")))
+        }
+    }
+}
+
+/// Checks cones, and returns the bounding box of all.
+pub(super) fn bounds_of_cones(cones: &[Cone]) -> Result<Option<Bounds>, SceneError> {
+    let wrong = |(index, cone): (usize, &Cone)| Some(SceneError::Cone { index, error: cone.check().err()? });
+    match cones.iter().enumerate().find_map(wrong) {
+        Some(error) => Err(error),
+        None => Ok(cones.iter().map(Cone::bounds).reduce(Bounds::union)),
+    }
+}
+
+/// Converts checked cones to f32 in the frame at `origin`.
+pub(super) fn cones_in_frame(cones: &[Cone], origin: DVec3) -> Result<Vec<ConeInFrame>, SceneError> {
+    let in_frame = |(index, cone): (usize, &Cone)| {
+        cone.in_frame(origin).map_err(|error| SceneError::Cone { index, error })
+    };
+    cones.iter().enumerate().map(in_frame).collect()
+}
+
 /// Checks the number of spheres and each sphere, and returns the bounding box of all.
 pub(super) fn bounds_of_checked<T: Sync>(
     spheres: &[T],
     parts: impl Fn(&T) -> [f64; 4] + Sync,
 ) -> Result<Option<Bounds>, SceneError> {
-    if spheres.len() >= u32::MAX as usize {
-        let (count, most) = (spheres.len(), u32::MAX);
-        let message = format!("{count} spheres are too many; ids are u32 and {most} means a miss");
-        return Err(SceneError::Invalid(message));
-    }
+    check_count(spheres.len())?;
     let of_chunk = |first: usize, chunk: &[T]| {
         let mut bounds: Option<Bounds> = None;
         for (offset, item) in chunk.iter().enumerate() {
@@ -44,12 +71,13 @@ pub(super) fn bounds_of_checked<T: Sync>(
 /// The origin of a frame, the spheres in it, and their bounding box in world space.
 type InFrame = (DVec3, Vec<[f32; 4]>, Option<Bounds>);
 
-/// Checks spheres, and converts them to f32 in their own frame.
+/// Checks spheres, and converts them to f32 in the frame of the box that `of_all` makes of theirs.
 pub(super) fn in_own_frame<T: Sync>(
     spheres: &[T],
     parts: impl Fn(&T) -> [f64; 4] + Sync,
+    of_all: impl FnOnce(Option<Bounds>) -> Option<Bounds>,
 ) -> Result<InFrame, SceneError> {
-    let bounds = bounds_of_checked(spheres, &parts)?;
+    let bounds = of_all(bounds_of_checked(spheres, &parts)?);
     let origin = bounds.map_or(DVec3::ZERO, frame_origin);
     let narrow = parallel::try_map(spheres.len(), |i| moved(parts(&spheres[i]), origin));
     Ok((origin, narrow.map_err(|_| SceneError::Memory { count: spheres.len() })?, bounds))
@@ -87,6 +115,16 @@ pub(crate) fn bounds_in_frame(origin: DVec3, spheres: &[[f32; 4]]) -> Option<Bou
     };
     let of_chunk = |_: usize, chunk: &[[f32; 4]]| chunk.iter().map(of_sphere).reduce(Bounds::union);
     parallel::map_chunks(spheres, of_chunk).into_iter().flatten().reduce(Bounds::union)
+}
+
+/// The bounding box, in world space, of shapes in a frame.
+pub(super) fn bounds_of_shapes(origin: DVec3, shapes: &SharedShapes) -> Option<Bounds> {
+    let of_cone = |cone: &ConeInFrame| {
+        let [low, high] = cone.corners();
+        Bounds::between(origin + low, origin + high)
+    };
+    let of_spheres = bounds_in_frame(origin, &shapes.spheres);
+    of_spheres.into_iter().chain(shapes.cones.iter().map(of_cone)).reduce(Bounds::union)
 }
 
 /// Bounds and frame of a scene whose parts are loaded separately. All parts share them. They determine the arithmetic

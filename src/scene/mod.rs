@@ -10,13 +10,17 @@ use crate::geometry::math::MAX_LENGTH;
 use crate::geometry::subject::{Subject, WholeSubject};
 use crate::image::color::LinearRgb;
 use crate::parallel;
-use crate::scene::material::SurfaceProperties;
+use crate::scene::cone::{Cone, ConeError};
+use crate::scene::material::{Material, SurfaceProperties};
 use crate::scene::sphere::Sphere;
 use crate::scene::sphere_array::SphereArray;
-use frame::{bounds_of_checked, f64_parts, frame_origin, in_own_frame, moved};
+use frame::{
+    bounds_of_checked, bounds_of_cones, check_count, cones_in_frame, f64_parts, frame_origin, in_own_frame, moved,
+};
 
 mod appearance;
 mod color_map;
+pub mod cone;
 mod duplicates;
 mod error;
 mod frame;
@@ -29,13 +33,14 @@ mod update;
 pub(crate) use appearance::SceneAppearance;
 #[cfg(feature = "gpu")]
 pub(crate) use appearance::alpha_of;
+pub use crate::geometry::cone::ConeInFrame;
 pub use appearance::{Appearance, Colors};
 pub use color_map::{ColorMap, ColorMapError};
 pub(crate) use duplicates::Duplicates;
 pub use error::SceneError;
 pub use frame::SceneExtent;
 pub(crate) use frame::bounds_in_frame;
-pub(crate) use shared::SharedSpheres;
+pub(crate) use shared::{Shape, SharedShapes};
 pub use update::{Centers, NewColors, SceneUpdate, UpdateError};
 
 /// Spheres in the frame of the scene, which is an f64 origin with f32 offsets, and their appearance.
@@ -47,7 +52,7 @@ pub use update::{Centers, NewColors, SceneUpdate, UpdateError};
 pub struct Scene {
     origin: DVec3,
     /// Shared with a device's copy, which draws smooth pictures from them.
-    spheres: Arc<SharedSpheres>,
+    shapes: Arc<SharedShapes>,
     /// Shared with users that need nothing else of the scene.
     appearance: Arc<SceneAppearance>,
     bounds: Option<Bounds>,
@@ -64,8 +69,8 @@ impl Scene {
     /// Returns an error if a centre or radius is out of range (the error names the first such sphere in input order),
     /// or if there are too many spheres.
     pub fn new(spheres: &[Sphere]) -> Result<Self, SceneError> {
-        let (origin, narrow, bounds) = in_own_frame(spheres, f64_parts)?;
-        Ok(Self::in_frame(origin, narrow, appearance_of(spheres), bounds))
+        let (origin, narrow, bounds) = in_own_frame(spheres, f64_parts, |bounds| bounds)?;
+        Ok(Self::in_frame(origin, (narrow, Vec::new()), appearance_of(spheres), bounds))
     }
 
     /// A scene from spheres and their appearance. Arrays are not copied, except for spheres in f64. Spheres far from
@@ -74,20 +79,54 @@ impl Scene {
     /// # Errors
     /// Returns the same errors as [`Scene::new`] and [`Appearance::check`].
     pub fn from_parts(array: SphereArray, appearance: Appearance) -> Result<Self, SceneError> {
-        let count = array.len();
+        Self::from_shapes(array, &[], appearance)
+    }
+
+    /// A scene from spheres, cones and cylinders, and their appearance. The ids of the cones come after those of the
+    /// spheres, and so do their colours and surface properties.
+    ///
+    /// # Errors
+    /// Returns the same errors as [`Scene::from_parts`], and an error if a cone is out of range, which names the first such
+    /// cone in input order, or emissive.
+    pub fn from_shapes(array: SphereArray, cones: &[Cone], appearance: Appearance) -> Result<Self, SceneError> {
+        let count = array.len() + cones.len();
+        let of_cones = bounds_of_cones(cones)?;
+        let with_cones = |bounds: Option<Bounds>| match (bounds, of_cones) {
+            (Some(bounds), Some(of_cones)) => Some(bounds.union(of_cones)),
+            (bounds, of_cones) => bounds.or(of_cones),
+        };
         let (origin, spheres, bounds) = match array {
             SphereArray::F32(mut spheres) => {
-                let bounds = bounds_of_checked(&spheres, |s| s.map(f64::from))?;
+                let bounds = with_cones(bounds_of_checked(&spheres, |s| s.map(f64::from))?);
                 let origin = bounds.map_or(DVec3::ZERO, frame_origin);
                 if origin != DVec3::ZERO {
                     parallel::for_each_mut(&mut spheres, |s| *s = moved(s.map(f64::from), origin));
                 }
                 (origin, spheres, bounds)
             }
-            SphereArray::F64(spheres) => in_own_frame(&spheres, |s| *s)?,
+            SphereArray::F64(spheres) => in_own_frame(&spheres, |s| *s, with_cones)?,
         };
+        check_count(count)?;
         appearance.check(count)?;
-        Ok(Self::in_frame(origin, spheres, appearance, bounds))
+        let cones = cones_in_frame(cones, origin)?;
+        let scene = Self::in_frame(origin, (spheres, cones), appearance, bounds);
+        scene.check_cones()?;
+        Ok(scene)
+    }
+
+    /// Returns an error if a cone is emissive: the ways in which light is sampled know spheres.
+    fn check_cones(&self) -> Result<(), SceneError> {
+        let is_emissive = |index: &usize| {
+            let surface = self.appearance.surface_of((self.len() + index) as u32);
+            matches!(surface.material, Material::Emissive { .. })
+        };
+        if !self.appearance.surfaces().iter().any(|of| matches!(of.material, Material::Emissive { .. })) {
+            return Ok(());
+        }
+        match (0..self.cones().len()).find(is_emissive) {
+            Some(index) => Err(SceneError::Cone { index, error: ConeError::emissive() }),
+            None => Ok(()),
+        }
     }
 
     /// A scene from spheres (x, y, z, radius) in f32, all of one colour. The array is not copied. Spheres far from the
@@ -104,8 +143,8 @@ impl Scene {
     /// # Errors
     /// Returns the same errors as [`Scene::new`].
     pub fn from_f64(spheres: &[[f64; 4]], color: LinearRgb) -> Result<Self, SceneError> {
-        let (origin, spheres, bounds) = in_own_frame(spheres, |s| *s)?;
-        Ok(Self::in_frame(origin, spheres, color.into(), bounds))
+        let (origin, spheres, bounds) = in_own_frame(spheres, |s| *s, |bounds| bounds)?;
+        Ok(Self::in_frame(origin, (spheres, Vec::new()), color.into(), bounds))
     }
 
     /// Some spheres of a larger scene, in input order and in its frame. If pictures of parts by primary rays are merged
@@ -124,7 +163,7 @@ impl Scene {
                 "sphere {index} is outside of the scene that it should be a part of"
             )));
         }
-        let scene = Self::in_frame(origin, spheres, appearance, Some(whole.bounds));
+        let scene = Self::in_frame(origin, (spheres, Vec::new()), appearance, Some(whole.bounds));
         Ok(Self { whole: Some(whole), ..scene })
     }
 
@@ -134,17 +173,23 @@ impl Scene {
         self.whole
     }
 
-    /// A scene from an origin, spheres, appearance and bounds that have been checked.
-    fn in_frame(origin: DVec3, spheres: Vec<[f32; 4]>, appearance: Appearance, bounds: Option<Bounds>) -> Self {
-        let appearance = Arc::new(SceneAppearance::new(appearance, spheres.len()));
-        Self { origin, spheres: Arc::new(SharedSpheres::new(spheres)), appearance, bounds, added: 0, whole: None }
+    /// A scene from an origin, shapes, appearance and bounds that have been checked.
+    fn in_frame(
+        origin: DVec3,
+        (spheres, cones): (Vec<[f32; 4]>, Vec<ConeInFrame>),
+        appearance: Appearance,
+        bounds: Option<Bounds>,
+    ) -> Self {
+        let shapes = Arc::new(SharedShapes::new(spheres, cones));
+        let appearance = Arc::new(SceneAppearance::new(appearance, shapes.len()));
+        Self { origin, shapes, appearance, bounds, added: 0, whole: None }
     }
 
-    /// The spheres, all with these surface properties.
+    /// The shapes, all with these surface properties.
     #[must_use]
     pub fn with_surface(mut self, surface: SurfaceProperties) -> Self {
         let appearance = Arc::unwrap_or_clone(self.appearance).appearance.with_surface(surface);
-        self.appearance = Arc::new(SceneAppearance::new(appearance, self.spheres.len()));
+        self.appearance = Arc::new(SceneAppearance::new(appearance, self.shapes.len()));
         self
     }
 
@@ -152,7 +197,7 @@ impl Scene {
     /// not affect choices based on the data, such as the mean radius and the flat axis.
     #[must_use]
     pub fn with_added(mut self, count: usize) -> Self {
-        self.added = count.min(self.spheres.len());
+        self.added = count.min(self.len());
         self
     }
 
@@ -173,9 +218,9 @@ impl Scene {
         if self.appearance.is_opaque() {
             return None;
         }
-        let spheres: Vec<[f32; 4]> = self.opaque_ids().map(|id| self.spheres[id as usize]).collect();
+        let spheres: Vec<[f32; 4]> = self.opaque_ids().map(|id| self.spheres()[id as usize]).collect();
         let bounds = frame::bounds_in_frame(self.origin, &spheres);
-        Some(Self::in_frame(self.origin, spheres, LinearRgb::WHITE.into(), bounds))
+        Some(Self::in_frame(self.origin, (spheres, Vec::new()), LinearRgb::WHITE.into(), bounds))
     }
 
     /// The indices of the opaque spheres, in ascending order.
@@ -197,7 +242,7 @@ impl Scene {
         appearance.check(spheres.len())?;
         bounds_of_checked(&spheres, frame::slackened)?;
         let bounds = frame::bounds_in_frame(origin, &spheres);
-        Ok(Self::in_frame(origin, spheres, appearance, bounds))
+        Ok(Self::in_frame(origin, (spheres, Vec::new()), appearance, bounds))
     }
 
     /// The origin of the scene's frame in world space.
@@ -209,12 +254,24 @@ impl Scene {
     /// The spheres in input order: centre (x, y, z) in the frame of the scene, and radius.
     #[must_use]
     pub fn spheres(&self) -> &[[f32; 4]] {
-        &self.spheres
+        &self.shapes.spheres
     }
 
-    /// The spheres, which stay the same if the scene is updated.
-    pub(crate) fn shared_spheres(&self) -> &Arc<SharedSpheres> {
-        &self.spheres
+    /// The cones and cylinders in input order, in the frame of the scene. The ids of the first follow those of the spheres.
+    #[must_use]
+    pub fn cones(&self) -> &[ConeInFrame] {
+        &self.shapes.cones
+    }
+
+    /// The number of spheres, cones and cylinders. Ids are below it.
+    #[must_use]
+    pub fn shape_count(&self) -> usize {
+        self.shapes.len()
+    }
+
+    /// The shapes, which stay the same if the scene is updated.
+    pub(crate) fn shared_shapes(&self) -> &Arc<SharedShapes> {
+        &self.shapes
     }
 
     /// The appearance of the spheres.
@@ -228,43 +285,42 @@ impl Scene {
         &self.appearance
     }
 
-    /// The colour of a sphere, by its index in input order.
+    /// The colour of a shape, by its id, which is the index in input order.
     ///
     /// # Panics
-    /// Panics if there is no such sphere.
+    /// Panics if there is no such shape.
     #[must_use]
     pub fn color(&self, id: u32) -> LinearRgb {
-        assert!((id as usize) < self.spheres.len(), "there is no sphere {id}");
+        assert!((id as usize) < self.shape_count(), "there is no shape {id}");
         self.appearance.color_of(id)
     }
 
-    /// The surface properties of a sphere, by its index in input order. The opacity includes the alpha of the sphere's
-    /// colour.
+    /// The surface properties of a shape, by its id. The opacity includes the alpha of the shape's colour.
     ///
     /// # Panics
-    /// Panics if there is no such sphere.
+    /// Panics if there is no such shape.
     #[must_use]
     pub fn surface(&self, id: u32) -> SurfaceProperties {
-        assert!((id as usize) < self.spheres.len(), "there is no sphere {id}");
+        assert!((id as usize) < self.shape_count(), "there is no shape {id}");
         self.appearance.surface_of(id)
     }
 
-    /// The bounding box of all spheres in world space. `None` if there are none.
+    /// The bounding box of all shapes in world space. `None` if there are none.
     #[must_use]
     pub fn bounds(&self) -> Option<Bounds> {
         self.bounds
     }
 
-    /// The box that a camera should show, which is that of all spheres, or a unit cube if there are none.
+    /// The box that a camera should show, which is that of all shapes, or a unit cube if there are none.
     #[must_use]
     pub fn bounds_to_frame(&self) -> Bounds {
         self.bounds.unwrap_or(Bounds::of_sphere(self.origin, 0.5))
     }
 
-    /// The subject that a camera should frame: all spheres, or a unit cube if there are none.
+    /// The subject that a camera should frame: all shapes, or a unit cube if there are none.
     #[must_use]
     pub fn subject(&self) -> Subject<'_> {
-        let subject = Subject::spheres(self.origin, &self.spheres, self.bounds_to_frame());
+        let subject = Subject::spheres(self.origin, self.spheres(), self.bounds_to_frame()).with_cones(self.cones());
         match &self.whole {
             Some(whole) => subject.with_whole(WholeSubject {
                 mean_radius: whole.mean_radius(),
@@ -277,13 +333,13 @@ impl Scene {
     /// The number of spheres.
     #[must_use]
     pub fn len(&self) -> usize {
-        self.spheres.len()
+        self.spheres().len()
     }
 
-    /// Returns true if the scene has no spheres.
+    /// Returns true if the scene has no shapes.
     #[must_use]
     pub fn is_empty(&self) -> bool {
-        self.spheres.is_empty()
+        self.shape_count() == 0
     }
 }
 

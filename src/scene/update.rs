@@ -167,7 +167,7 @@ impl SceneUpdate<'_> {
     /// The centre of a sphere in world space after the update, and the sphere in the scene's frame.
     fn sphere(&self, scene: &Scene, index: usize) -> ([f64; 3], [f32; 4]) {
         let offset = index - self.first as usize;
-        let [x, y, z, radius] = scene.spheres[index];
+        let [x, y, z, radius] = scene.spheres()[index];
         let radius = self.radii.map_or(radius, |radii| radii[offset]);
         match self.centers {
             None => {
@@ -237,8 +237,8 @@ impl Scene {
         update.check_colors(self, range.start)?;
         if update.changes_shape() {
             let moved: Vec<_> = range.clone().map(|index| update.sphere(self, index).1).collect();
-            Arc::make_mut(&mut self.spheres).edit()[range.clone()].copy_from_slice(&moved);
-            self.bounds = frame::bounds_in_frame(self.origin, &self.spheres);
+            Arc::make_mut(&mut self.shapes).edit()[range.clone()].copy_from_slice(&moved);
+            self.bounds = frame::bounds_of_shapes(self.origin, &self.shapes);
         }
         if let Some(new) = &update.colors {
             Arc::make_mut(&mut self.appearance).set_colors(range, new);

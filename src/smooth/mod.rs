@@ -17,7 +17,7 @@ use crate::image::{Averages, Image, ImageTooLarge, Layer, LayerSet, outline};
 use crate::light::LightKind;
 use crate::parallel;
 use crate::render::{Decision, Picture, Progress, RenderSettings, Watch};
-use crate::scene::{Scene, SceneAppearance, SharedSpheres};
+use crate::scene::{Scene, SceneAppearance, SharedShapes};
 #[cfg(feature = "gpu")]
 use cells::Cells;
 #[cfg(feature = "gpu")]
@@ -65,7 +65,7 @@ impl RenderSettings {
 /// A smooth picture, before it is drawn.
 #[derive(Clone, Copy)]
 pub(crate) struct SmoothPicture<'a> {
-    spheres: &'a SharedSpheres,
+    shapes: &'a SharedShapes,
     appearance: &'a SceneAppearance,
     /// Origin of the spheres' frame, in world space.
     origin: DVec3,
@@ -77,19 +77,19 @@ pub(crate) struct SmoothPicture<'a> {
 impl<'a> SmoothPicture<'a> {
     /// `None` if the picture is not smooth.
     pub(crate) fn new(
-        (spheres, origin): (&'a SharedSpheres, DVec3),
+        (shapes, origin): (&'a SharedShapes, DVec3),
         appearance: &'a SceneAppearance,
         view: &View<'a>,
         settings: &'a RenderSettings,
     ) -> Option<Self> {
         let rays = Rays::new(&view.film, settings);
-        let picture = Self { spheres, appearance, origin, view: *view, rays, settings };
+        let picture = Self { shapes, appearance, origin, view: *view, rays, settings };
         is_smooth(settings, appearance, view.camera).then_some(picture)
     }
 
     /// The picture of a scene; `None` if it is not smooth.
     pub(crate) fn of(scene: &'a Scene, view: &View<'a>, settings: &'a RenderSettings) -> Option<Self> {
-        Self::new((scene.shared_spheres(), scene.origin()), scene.checked_appearance(), view, settings)
+        Self::new((scene.shared_shapes(), scene.origin()), scene.checked_appearance(), view, settings)
     }
 
     /// The view of the ids from which the picture follows: for a part of a film, with the pixels around it, and with a pixel
@@ -111,12 +111,12 @@ impl<'a> SmoothPicture<'a> {
         let side = u64::from(self.rays.side);
         // A ray makes at most one spot, and a pixel at an edge several.
         let spots = (pixels * (side * side).max(2)).min(2 * BAND as u64) * size_of::<Spot>() as u64;
-        let cells = Cells::new(self.spheres);
+        let cells = Cells::new(&self.shapes.spheres);
         let shadows = self.settings.studio_parameters().is_some_and(|studio| studio.shadows);
         let is_lamp = |kind| shadows && matches!(kind, LightKind::Directional { .. });
         let lamps = self.settings.lights.iter().filter(|light| is_lamp(light.kind)).count();
         spots
-            + Levels::bytes(&cells, self.spheres.len())
+            + Levels::bytes(&cells, self.shapes.spheres.len())
             + openness::Openness::bytes(&cells, pixels)
             + lamps as u64 * lamps::Lamp::bytes(&cells, pixels)
     }
@@ -168,19 +168,19 @@ impl<'a> SmoothPicture<'a> {
         });
         lit.see(&spots);
         let averages = parallel::map(pixels.len(), |at| self.averages(&lit, &spots[at].all));
-        self.spheres.keep(tables);
+        self.shapes.keep(tables);
         averages
     }
 
     /// The tables of an earlier picture of the same spheres, or new ones.
     fn tables(&self) -> Tables {
-        Tables::take(self.spheres, self.settings.studio_parameters())
+        Tables::take(self.shapes, self.settings.studio_parameters())
     }
 
     /// The tools of drawing: they find spots, and light them.
     fn tools<'b>(&'b self, tables: &'b mut Tables) -> Option<(Finder<'a>, Lit<'b>)> {
-        let finder = Finder::new(self.spheres, self.origin, &self.view, self.rays, self.settings);
-        Some((finder, Lit::new(self.appearance, self.view.camera, self.settings, tables, self.spheres)?))
+        let finder = Finder::new(&self.shapes.spheres, self.origin, &self.view, self.rays, self.settings);
+        Some((finder, Lit::new(self.appearance, self.view.camera, self.settings, tables, &self.shapes.spheres)?))
     }
 
     /// Writes colour, opacity, albedo and samples of all pixels. `go_on` learns the completed part several times, and stops
@@ -216,7 +216,7 @@ impl<'a> SmoothPicture<'a> {
             }
         }
         let crowded = lit.crowded();
-        self.spheres.keep(tables);
+        self.shapes.keep(tables);
         Some((opacity, crowded))
     }
 

@@ -5,7 +5,7 @@ use super::cells::Cells;
 use super::levels::{Levels, Places};
 use super::openness::Openness;
 use crate::render::Studio;
-use crate::scene::SharedSpheres;
+use crate::scene::SharedShapes;
 
 #[derive(Debug)]
 pub(super) struct Tables {
@@ -25,14 +25,15 @@ struct Wanted {
 
 impl Tables {
     /// Takes the tables that an earlier picture left, or begins new ones.
-    pub(super) fn take(spheres: &SharedSpheres, studio: Option<&Studio>) -> Self {
+    pub(super) fn take(shapes: &SharedShapes, studio: Option<&Studio>) -> Self {
         let wanted = Wanted {
             shadows: studio.is_some_and(|studio| studio.shadows),
             radius: studio.and_then(|studio| Some(studio.occlusion.as_ref()?.radius.unwrap_or(f64::INFINITY))),
         };
-        if let Some(kept) = spheres.take::<Self>().filter(|kept| kept.wanted == wanted) {
+        if let Some(kept) = shapes.take::<Self>().filter(|kept| kept.wanted == wanted) {
             return kept;
         }
+        let spheres = &shapes.spheres[..];
         let cells = Cells::new(spheres);
         let needs_levels = wanted.shadows || wanted.radius.is_some() && cells.has_near;
         let levels = Levels::new(&cells, if needs_levels { spheres } else { &[] });

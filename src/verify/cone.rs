@@ -2,7 +2,7 @@
 //! lines of the kernel are followed number by number (`verify/number`). Decisions that bounds leave open are followed
 //! both ways.
 
-use crate::geometry::cone::Cone;
+use crate::geometry::cone::ConeInFrame;
 use crate::recording::NO_HIT;
 use crate::verify::choices::Choices;
 use crate::verify::number::{Number, Vector};
@@ -39,7 +39,7 @@ pub struct LegalConeHits {
 impl LegalConeHits {
     /// The legal answers of a device to a ray with these numbers.
     #[must_use]
-    pub fn new(origin: [f32; 3], direction: [f32; 3], cone: &Cone) -> Self {
+    pub fn new(origin: [f32; 3], direction: [f32; 3], cone: &ConeInFrame) -> Self {
         let mut legal = Self::default();
         let mut choices = Choices::default();
         loop {
@@ -75,7 +75,7 @@ impl LegalConeHits {
 }
 
 /// The answer of the kernel for one combination of open decisions. `None` for a miss.
-fn hit(origin: [f32; 3], direction: [f32; 3], cone: &Cone, choices: &mut Choices) -> Option<LegalConeHit> {
+fn hit(origin: [f32; 3], direction: [f32; 3], cone: &ConeInFrame, choices: &mut Choices) -> Option<LegalConeHit> {
     let (zero, two, half) = (Number::ZERO, Number::TWO, Number::HALF);
     let [origin, direction, start, end] = [origin, direction, cone.start, cone.end].map(Vector::recorded);
     let [first, second] = [cone.first_radius, cone.second_radius].map(|radius| Number::recorded(radius.abs()));

@@ -72,8 +72,8 @@ pub struct SceneBuffers {
 impl SceneBuffers {
     /// The picture of these spheres, if it is smooth.
     pub(crate) fn smooth<'a>(&'a self, view: &View<'a>, settings: &'a RenderSettings) -> Option<SmoothPicture<'a>> {
-        let SceneSummary { spheres, origin, appearance, .. } = &self.summary;
-        SmoothPicture::new((spheres, *origin), appearance, view, settings)
+        let SceneSummary { shapes, origin, appearance, .. } = &self.summary;
+        SmoothPicture::new((shapes, *origin), appearance, view, settings)
     }
 
     /// Copies a scene to a device, with a structure that suits it.

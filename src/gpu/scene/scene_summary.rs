@@ -9,7 +9,7 @@ use glam::DVec3;
 use crate::gpu::shader::Constant;
 use crate::image::color::LinearRgb;
 use crate::light::emitters::{EmissiveSphere, Emitters};
-use crate::scene::{Duplicates, Scene, SceneAppearance, SharedSpheres};
+use crate::scene::{Duplicates, Scene, SceneAppearance, SharedShapes};
 
 /// Palette, surfaces and emissive spheres of a scene.
 #[derive(Debug)]
@@ -17,8 +17,8 @@ pub(crate) struct SceneSummary {
     /// Origin of the scene's frame, in world space.
     pub(crate) origin: DVec3,
     pub(crate) appearance: Arc<SceneAppearance>,
-    /// The spheres, from which smooth pictures are drawn.
-    pub(crate) spheres: Arc<SharedSpheres>,
+    /// The shapes, from which smooth pictures are drawn.
+    pub(crate) shapes: Arc<SharedShapes>,
     pub(crate) emitters: Emitters,
     /// The spheres of `emitters`, in the same order.
     pub(crate) emissive: Vec<EmissiveSphere>,
@@ -33,7 +33,7 @@ impl SceneSummary {
         Self {
             origin: scene.origin(),
             appearance: Arc::clone(scene.checked_appearance()),
-            spheres: Arc::clone(scene.shared_spheres()),
+            shapes: Arc::clone(scene.shared_shapes()),
             emissive: EmissiveSphere::all(scene, &emitters),
             emitters,
         }
@@ -44,7 +44,7 @@ impl SceneSummary {
         Self {
             origin: scene.origin(),
             appearance: Arc::new(SceneAppearance::new(LinearRgb::WHITE.into(), 0)),
-            spheres: Arc::default(),
+            shapes: Arc::default(),
             emitters: Emitters::default(),
             emissive: Vec::new(),
         }

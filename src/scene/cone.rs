@@ -1,0 +1,170 @@
+//! Cones and cylinders.
+
+use glam::DVec3;
+
+use crate::geometry::bounds::Bounds;
+use crate::geometry::cone::ConeInFrame;
+
+/// The largest coordinate or radius of a cone, 2⁴⁰, and the inverse of its smallest radius. Squares of lengths times
+/// squares of [`MOST_ASPECT`] must be normal numbers in f32.
+const MAX_LENGTH: f64 = (1_u64 << 40) as f64;
+
+/// The most by which length and larger radius differ, as a factor.
+const MOST_ASPECT: f64 = 1e4;
+
+/// A cone between two discs, in world space, that has not been checked. A cylinder has two equal radii, and the tip of a
+/// pointed cone has radius 0. [`Scene::from_shapes`](crate::Scene::from_shapes) checks it.
+///
+/// Names and meaning are those of `cone` and `cylinder` in Khronos' ANARI 1.0.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Cone {
+    /// The middle of the first disc, in scene units.
+    pub start: [f64; 3],
+    /// The middle of the second disc.
+    pub end: [f64; 3],
+    /// The radii of the discs.
+    pub radii: [f64; 2],
+    /// The closed ends.
+    pub caps: Caps,
+}
+
+/// The ends of a cone that are closed by discs. The inside is seen through others.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
+pub enum Caps {
+    /// None of them, as in a tube.
+    None,
+    /// The first.
+    First,
+    /// The second.
+    Second,
+    /// Both.
+    #[default]
+    Both,
+}
+
+/// The reason why a cone is not valid.
+#[derive(Clone, Debug, PartialEq, thiserror::Error)]
+#[error("{0}")]
+#[non_exhaustive]
+pub struct ConeError(String);
+
+impl ConeError {
+    pub(super) fn emissive() -> Self {
+        Self("it has an emissive material; only spheres emit light".to_owned())
+    }
+}
+
+impl Cone {
+    /// A cone with closed ends.
+    #[must_use]
+    pub const fn new(start: [f64; 3], end: [f64; 3], radii: [f64; 2]) -> Self {
+        Self { start, end, radii, caps: Caps::Both }
+    }
+
+    /// A cylinder with closed ends.
+    #[must_use]
+    pub const fn cylinder(start: [f64; 3], end: [f64; 3], radius: f64) -> Self {
+        Self::new(start, end, [radius; 2])
+    }
+
+    /// The cone with other closed ends.
+    #[must_use]
+    pub const fn with_caps(self, caps: Caps) -> Self {
+        Self { caps, ..self }
+    }
+
+    /// Checks that the cone is in range.
+    ///
+    /// # Errors
+    /// Returns an error if a coordinate or radius is not finite or too large, if both radii are 0, or if the cone is too
+    /// thin or too flat.
+    pub fn check(&self) -> Result<(), ConeError> {
+        let Self { start, end, radii, .. } = *self;
+        for (name, place) in [("start", start), ("end", end)] {
+            // `contains` is false for NaN.
+            if !place.iter().all(|x| (-MAX_LENGTH..=MAX_LENGTH).contains(x)) {
+                return Err(ConeError(format!(
+                    "its {name} is {place:?}; every coordinate must be finite and at most {MAX_LENGTH:e} in size"
+                )));
+            }
+        }
+        let is_radius = |radius: &f64| *radius == 0.0 || (1.0 / MAX_LENGTH..=MAX_LENGTH).contains(radius);
+        if let Some(radius) = radii.iter().find(|radius| !is_radius(radius)) {
+            let range = format!("finite, and between {:e} and {MAX_LENGTH:e}, or 0 at a tip", 1.0 / MAX_LENGTH);
+            return Err(ConeError(format!("its radius is {radius:?}; a radius must be {range}")));
+        }
+        let radius = radii[0].max(radii[1]);
+        if radius == 0.0 {
+            return Err(ConeError("both radii are 0; one of them must be larger".to_owned()));
+        }
+        let length = (DVec3::from(end) - DVec3::from(start)).length();
+        if length == 0.0 {
+            return Err(ConeError(format!("it has no length: start and end are both {start:?}")));
+        }
+        if length > MOST_ASPECT * radius {
+            return Err(ConeError(format!(
+                "its length, {length:?}, is more than {MOST_ASPECT} times its radius, {radius:?}; make it thicker, or \
+                 several shorter ones of it"
+            )));
+        }
+        if radius > MOST_ASPECT * length {
+            return Err(ConeError(format!(
+                "its radius, {radius:?}, is more than {MOST_ASPECT} times its length, {length:?}; make it longer"
+            )));
+        }
+        Ok(())
+    }
+
+    /// A box around the cone.
+    pub(super) fn bounds(&self) -> Bounds {
+        let [start, end] = [self.start, self.end].map(DVec3::from);
+        Bounds::of_sphere(start, self.radii[0]).union(Bounds::of_sphere(end, self.radii[1]))
+    }
+
+    /// The cone in a frame. An error if rounding leaves no length.
+    pub(super) fn in_frame(&self, origin: DVec3) -> Result<ConeInFrame, ConeError> {
+        let [start, end] = [self.start, self.end].map(|place| (DVec3::from(place) - origin).as_vec3().to_array());
+        if start == end {
+            return Err(ConeError(format!(
+                "its start and end are both {start:?} after rounding to f32 in the scene's frame, whose origin is {:?}",
+                origin.to_array()
+            )));
+        }
+        let [is_first, is_second] = match self.caps {
+            Caps::None => [false, false],
+            Caps::First => [true, false],
+            Caps::Second => [false, true],
+            Caps::Both => [true, true],
+        };
+        let signed = |radius: f64, is_closed: bool| if is_closed { radius as f32 } else { -(radius as f32) };
+        let [first_radius, second_radius] = [signed(self.radii[0], is_first), signed(self.radii[1], is_second)];
+        Ok(ConeInFrame { start, first_radius, end, second_radius })
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn what_is_wrong_with_a_cone_is_said() {
+        let good = Cone::cylinder([0.0; 3], [0.0, 0.0, 1.0], 0.5);
+        assert_eq!(good.check(), Ok(()));
+        for (cone, expected) in [
+            (Cone { end: [0.0; 3], ..good }, "it has no length: start and end are both [0.0, 0.0, 0.0]"),
+            (Cone { radii: [0.0; 2], ..good }, "both radii are 0"),
+            (Cone { radii: [0.5, -1.0], ..good }, "its radius is -1.0; a radius must be finite"),
+            (Cone { radii: [f64::NAN, 1.0], ..good }, "its radius is NaN"),
+            (Cone { end: [f64::NAN, 0.0, 0.0], ..good }, "its end is [NaN, 0.0, 0.0]; every coordinate"),
+            (Cone { start: [1e13, 0.0, 0.0], ..good }, "its start is [10000000000000.0"),
+            (Cone { radii: [1e-5; 2], ..good }, "its length, 1.0, is more than 10000 times its radius, 1e-5; make"),
+            (Cone { end: [0.0, 0.0, 1e-5], ..good }, "its radius, 0.5, is more than 10000 times its length"),
+        ] {
+            let error = cone.check().unwrap_err().to_string();
+            assert!(error.starts_with(expected), "{error}");
+        }
+        let far = Cone::cylinder([1e9, 0.0, 0.0], [1e9 + 1.0, 0.0, 0.0], 0.5);
+        assert!(far.in_frame(DVec3::ZERO).is_err());
+        assert!(far.in_frame(DVec3::new(1e9, 0.0, 0.0)).is_ok());
+    }
+}
