@@ -3,9 +3,9 @@
 pub use crate::accel::grid::Grid;
 pub use crate::accel::slab::SMALLEST_COMPONENT;
 pub use crate::accel::wide_tree::{WideNode, WideTree};
-pub use crate::cpu::cone::intersect as intersect_cone;
 pub use crate::cpu::light::live::{LiveFrame, LiveReference};
 pub use crate::geometry::cone::ConeInFrame;
+pub use crate::geometry::cone_crossing::intersect as intersect_cone;
 #[cfg(feature = "gpu")]
 pub use crate::gpu::edit::{KernelRewrite, ShaderEdit};
 pub use crate::recording::NO_HIT;

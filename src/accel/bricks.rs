@@ -1,6 +1,7 @@
 //! Bricks: a brick is a part of a scene that fits into a device's bindings, with its own acceleration structure. Bricks
 //! are built one after the other, so that not all of them have to be in memory.
 use std::collections::VecDeque;
+use std::ops::Range;
 
 use glam::Vec3;
 
@@ -10,10 +11,11 @@ use super::grid_build::{BuiltGrid, build_grid};
 use super::plan::AccelPlan;
 use super::split::Item;
 use super::statistics::Margins;
-use super::structure::{BrickKind, Primitive, Structure};
+use super::structure::{Primitive, Structure};
 #[cfg(feature = "gpu")]
 use super::tiles::TileLists;
 use super::wide_tree::WideTree;
+use crate::geometry::cone::ConeInFrame;
 #[cfg(feature = "gpu")]
 use crate::parallel::map_chunks;
 use crate::parallel::ranges;
@@ -47,11 +49,24 @@ pub struct Brick {
     pub index: Index,
     /// Centre (x, y, z) in the scene's frame, and radius. The order is that of the structure.
     pub spheres: Vec<[f32; 4]>,
-    /// Index of each sphere in input order.
+    /// Cones in the scene's frame, in the place of spheres, in the order of the structure.
+    pub cones: Vec<ConeInFrame>,
+    /// Id of each shape.
     pub ids: Vec<u32>,
 }
 
 impl Brick {
+    /// The kind of the shapes.
+    pub(crate) fn primitive(&self) -> Primitive {
+        if self.cones.is_empty() { Primitive::Sphere } else { Primitive::Cone }
+    }
+
+    /// The structure of a brick of cones.
+    #[cfg(feature = "gpu")]
+    pub(crate) fn structure_of_cones(&self) -> Structure {
+        if matches!(self.index, Index::WideTree(_)) { Structure::WideTree } else { Structure::List }
+    }
+
     /// Whether the index is a grid in which some cells have grids of their own.
     pub(crate) fn is_nested(&self) -> bool {
         matches!(&self.index, Index::Grid(grid) if grid.is_nested())
@@ -73,12 +88,6 @@ impl Accel {
     #[must_use]
     pub fn structure(&self) -> Structure {
         self.structure
-    }
-
-    /// The structure and the primitive that kernels must support to search the bricks.
-    #[must_use]
-    pub fn kind(&self) -> BrickKind {
-        BrickKind { structure: self.structure, primitive: Primitive::Sphere }
     }
 
     /// The bricks. There is at least one, which may be empty.
@@ -103,7 +112,7 @@ impl Accel {
 
 /// Makes the boxes for ray queries of spheres (centre x, y, z in the scene's frame, radius), inflated by `margin`.
 fn query_boxes(spheres: &[[f32; 4]], margin: f32) -> Vec<[f32; 6]> {
-    let of_item = |item: &Item| {
+    let of_item = |item: &Item<f32>| {
         let ([x, y, z], reach) = (item.center, item.reach);
         [x - reach, y - reach, z - reach, x + reach, y + reach, z + reach]
     };
@@ -118,6 +127,9 @@ pub struct Bricks<'a> {
     spheres: &'a [[f32; 4]],
     /// For each brick that has not been built, its spheres' indices in input order, ascending.
     parts: VecDeque<Vec<u32>>,
+    cones: &'a [ConeInFrame],
+    /// The cones of each brick that has not been built. These bricks come after those of the spheres.
+    parts_of_cones: VecDeque<Range<usize>>,
     may_split_duplicates: bool,
 }
 
@@ -145,16 +157,37 @@ impl AccelPlan {
         if parts.is_empty() {
             parts.push_back(Vec::new());
         }
-        Bricks { plan: self, spheres, parts, may_split_duplicates }
+        Bricks { plan: self, spheres, parts, cones: &[], parts_of_cones: VecDeque::new(), may_split_duplicates }
     }
 
     /// Builds the planned structure. `spheres` must be those of the plan. [`AccelPlan::bricks`] needs less memory.
     #[must_use]
     pub fn build(&self, spheres: &[[f32; 4]]) -> Accel {
-        let bricks = self.bricks(spheres);
-        let ((min, max), may_split_duplicates) = (bricks.bounds(), bricks.may_split_duplicates());
-        let bricks: Vec<Brick> = bricks.collect();
-        let structure = self.structure.with_nested(bricks.iter().any(Brick::is_nested));
+        self.bricks(spheres).build()
+    }
+}
+
+impl<'a> Bricks<'a> {
+    /// Adds bricks for the cones of the plan. Without spheres, there are no other bricks.
+    #[must_use]
+    pub fn with_cones(mut self, cones: &'a [ConeInFrame]) -> Self {
+        if let Some(plan) = &self.plan.cones {
+            if self.spheres.is_empty() {
+                self.parts.clear();
+            }
+            self.parts_of_cones = ranges(cones.len(), plan.per_brick).into();
+            self.cones = cones;
+        }
+        self
+    }
+
+    /// Builds all bricks.
+    #[must_use]
+    pub fn build(self) -> Accel {
+        let structure = self.plan.structure;
+        let ((min, max), may_split_duplicates) = (self.bounds(), self.may_split_duplicates());
+        let bricks: Vec<Brick> = self.collect();
+        let structure = structure.with_nested(bricks.iter().any(Brick::is_nested));
         Accel { structure, bricks, min, max, may_split_duplicates }
     }
 }
@@ -183,16 +216,17 @@ impl Bricks<'_> {
         let margin = plan.statistics.margin();
         let own = || -> Vec<[f32; 4]> { ids.iter().map(|id| spheres[*id as usize]).collect() };
         match plan.structure {
-            Structure::List | Structure::Tiles => Brick { index: Index::List, spheres: own(), ids },
+            Structure::List | Structure::Tiles => Brick { index: Index::List, spheres: own(), cones: Vec::new(), ids },
             Structure::Grid | Structure::NestedGrid => {
                 let BuiltGrid { grid, spheres, ids } = build_grid(spheres, &ids, margin, plan.budget);
-                Brick { index: Index::Grid(grid), spheres, ids }
+                Brick { index: Index::Grid(grid), spheres, cones: Vec::new(), ids }
             }
             Structure::WideTree => {
                 let own = own();
                 let margins = Margins { all: margin, crowd: plan.crowd };
                 let tree = WideTree::build_with(&own, margins);
                 Brick {
+                    cones: Vec::new(),
                     spheres: tree.ids.iter().map(|index| own[*index as usize]).collect(),
                     ids: tree.ids.iter().map(|index| ids[*index as usize]).collect(),
                     index: Index::WideTree(tree),
@@ -201,7 +235,26 @@ impl Bricks<'_> {
             Structure::RayQuery => {
                 let own = own();
                 let boxes = query_boxes(&own, plan.box_margin * margin);
-                Brick { index: Index::RayQuery(boxes), spheres: own, ids }
+                Brick { index: Index::RayQuery(boxes), spheres: own, cones: Vec::new(), ids }
+            }
+        }
+    }
+
+    /// Builds a brick of some cones.
+    fn build_cones(&self, part: Range<usize>) -> Brick {
+        let own = &self.cones[part.clone()];
+        let first = (self.spheres.len() + part.start) as u32;
+        let spheres = Vec::new();
+        match &self.plan.cones {
+            Some(plan) if plan.structure == Structure::WideTree => {
+                let tree = WideTree::of_cones(own, self.plan.statistics.margin());
+                let cones = tree.ids.iter().map(|index| own[*index as usize]).collect();
+                let ids = tree.ids.iter().map(|index| first + index).collect();
+                Brick { index: Index::WideTree(tree), spheres, cones, ids }
+            }
+            _ => {
+                let ids = (first..first + own.len() as u32).collect();
+                Brick { index: Index::List, spheres, cones: own.to_vec(), ids }
             }
         }
     }
@@ -231,12 +284,15 @@ impl Iterator for Bricks<'_> {
     type Item = Brick;
 
     fn next(&mut self) -> Option<Brick> {
-        let part = self.parts.pop_front()?;
-        Some(self.build_part(part))
+        match self.parts.pop_front() {
+            Some(part) => Some(self.build_part(part)),
+            None => self.parts_of_cones.pop_front().map(|part| self.build_cones(part)),
+        }
     }
 
     fn size_hint(&self) -> (usize, Option<usize>) {
-        (self.parts.len(), Some(self.parts.len()))
+        let left = self.parts.len() + self.parts_of_cones.len();
+        (left, Some(left))
     }
 }
 
@@ -247,6 +303,7 @@ impl ExactSizeIterator for Bricks<'_> {}
 #[cfg(feature = "gpu")]
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) struct BrickBounds {
+    pub(crate) primitive: Primitive,
     pub(crate) center_min: Vec3,
     pub(crate) center_max: Vec3,
     pub(crate) min: Vec3,
@@ -255,17 +312,38 @@ pub(crate) struct BrickBounds {
 
 #[cfg(feature = "gpu")]
 impl BrickBounds {
-    pub(crate) const EMPTY: Self =
-        Self { center_min: Vec3::MAX, center_max: Vec3::MIN, min: Vec3::MAX, max: Vec3::MIN };
+    pub(crate) const EMPTY: Self = Self {
+        primitive: Primitive::Sphere,
+        center_min: Vec3::MAX,
+        center_max: Vec3::MIN,
+        min: Vec3::MAX,
+        max: Vec3::MIN,
+    };
 
     /// The bounds of spheres that fill a box.
     pub(crate) fn of_box((min, max): (Vec3, Vec3)) -> Self {
-        Self { center_min: min, center_max: max, min, max }
+        Self { primitive: Primitive::Sphere, center_min: min, center_max: max, min, max }
     }
 
     /// Computes the bounds of the given spheres.
     pub(crate) fn of_spheres(spheres: &[[f32; 4]]) -> Self {
         Self::joined(map_chunks(spheres, |_, spheres| spheres.iter().fold(Self::EMPTY, Self::with)))
+    }
+
+    /// Computes the bounds of a brick's shapes.
+    pub(crate) fn of_brick(brick: &Brick) -> Self {
+        let of_cone = |cone: &ConeInFrame| {
+            let [min, max] = cone.corners().map(|corner| corner.as_vec3());
+            let center = 0.5 * (min + max);
+            Self { center_min: center, center_max: center, min, max, ..Self::EMPTY }
+        };
+        match brick.primitive() {
+            Primitive::Sphere => Self::of_spheres(&brick.spheres),
+            Primitive::Cone => {
+                let all = Self::joined(brick.cones.iter().map(of_cone).collect());
+                Self { primitive: Primitive::Cone, ..all }
+            }
+        }
     }
 
     /// Computes the bounds of the spheres with the given indices.
@@ -282,6 +360,7 @@ impl BrickBounds {
     fn with(self, &[x, y, z, radius]: &[f32; 4]) -> Self {
         let center = Vec3::new(x, y, z);
         Self {
+            primitive: self.primitive,
             center_min: self.center_min.min(center),
             center_max: self.center_max.max(center),
             min: self.min.min(center - radius),
@@ -291,6 +370,7 @@ impl BrickBounds {
 
     fn joined(parts: Vec<Self>) -> Self {
         parts.into_iter().fold(Self::EMPTY, |all, part| Self {
+            primitive: all.primitive,
             center_min: all.center_min.min(part.center_min),
             center_max: all.center_max.max(part.center_max),
             min: all.min.min(part.min),

@@ -33,7 +33,7 @@ pub(crate) use bricks::BrickBounds;
 pub use bricks::{Accel, Brick, Bricks, Index};
 #[cfg(feature = "gpu")]
 pub(crate) use plan::LIST_LEN;
-pub use plan::{AccelPlan, PlannedBuffer};
+pub use plan::{AccelPlan, ConesPlan, PlannedBuffer};
 #[cfg(feature = "gpu")]
 pub(crate) use statistics::margin_of;
 pub use statistics::{Crowd, SceneStatistics};

@@ -6,7 +6,10 @@ use super::divide::largest_part;
 use super::grid::{GridBudget, MAX_FIRST_LEVEL};
 use super::statistics::{Crowd, SceneStatistics};
 use super::structure::{AccelChoice, Structure};
+#[cfg(feature = "gpu")]
+use super::structure::{BrickKind, Primitive};
 use super::wide_tree::{WIDE_BYTES_PER_SPHERE, WideNode};
+use crate::geometry::cone::ConeInFrame;
 
 /// Up to this number of spheres, no structure is worth its cost.
 const FEW: usize = 32;
@@ -43,6 +46,16 @@ impl PlannedBuffer {
     }
 }
 
+/// The structure of a scene's cones.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct ConesPlan {
+    /// A tree, or a list if that was asked for.
+    pub structure: Structure,
+    /// The number of bricks, in addition to those of the spheres.
+    pub brick_count: usize,
+    pub(super) per_brick: usize,
+}
+
 /// The acceleration structure that will be built for a scene.
 #[derive(Clone, Debug, PartialEq)]
 pub struct AccelPlan {
@@ -54,6 +67,8 @@ pub struct AccelPlan {
     pub structure: Structure,
     /// Why this structure was chosen.
     pub reason: String,
+    /// The bricks of the scene's cones, if there are any.
+    pub cones: Option<ConesPlan>,
     /// The choice that was asked for.
     pub choice: AccelChoice,
     /// The number of bricks.
@@ -106,7 +121,9 @@ impl AccelPlan {
         let largest = most_in_brick(structure, count, brick_count);
         let budget = grid_budget(structure, largest, binding_bytes);
         let (buffers, box_margin) = (Vec::new(), 1.0);
-        let mut plan = Self { statistics, crowd, structure, reason, choice, brick_count, budget, box_margin, buffers };
+        let cones = None;
+        let mut plan =
+            Self { statistics, crowd, structure, reason, cones, choice, brick_count, budget, box_margin, buffers };
         plan.buffers = plan.list_buffers();
         plan
     }
@@ -118,6 +135,39 @@ impl AccelPlan {
         Self { box_margin, ..self }
     }
 
+    /// The plan with the cones of the scene, for a device whose bindings hold up to `binding_bytes`.
+    #[must_use]
+    pub fn with_cones(self, cones: &[ConeInFrame], binding_bytes: u64) -> Self {
+        const BYTES: usize = size_of::<ConeInFrame>();
+        if cones.is_empty() {
+            return self;
+        }
+        let of_spheres = match self.statistics.count {
+            0 => (Vec3::MAX, Vec3::MIN),
+            _ => (self.statistics.min, self.statistics.max),
+        };
+        let joined = |(min, max): (Vec3, Vec3), cone: &ConeInFrame| {
+            let [low, high] = cone.corners().map(|corner| corner.as_vec3());
+            (min.min(low), max.max(high))
+        };
+        let mut plan = self.within(cones.iter().fold(of_spheres, joined));
+        let fits = (binding_bytes.min(MAX_BINDING_BYTES) as usize / BYTES).max(1);
+        let (structure, per_brick) = match plan.choice {
+            AccelChoice::List => (Structure::List, fits.min(LIST_LEN)),
+            _ => (Structure::WideTree, fits),
+        };
+        let (count, largest) = (cones.len() as u64, cones.len().min(per_brick) as u64);
+        let nodes = |count| if structure == Structure::WideTree { node_bytes(structure, count) } else { 0 };
+        let planned = |name, bytes, bytes_per_binding| PlannedBuffer { name, bytes, bytes_per_binding };
+        plan.buffers.extend([
+            planned("cones", BYTES as u64 * count, BYTES as u64 * largest),
+            planned("ids of cones", 4 * count, 4 * largest),
+            planned("nodes of cones", nodes(count), nodes(largest)),
+        ]);
+        plan.cones = Some(ConesPlan { structure, brick_count: cones.len().div_ceil(per_brick), per_brick });
+        plan
+    }
+
     /// The plan for spheres that are a part of a scene with the given box, in the scene's frame. Rays start in
     /// that box, and the margin is that of the whole scene.
     #[must_use]
@@ -125,6 +175,15 @@ impl AccelPlan {
         // The margin of a crowd is for rays that start in the box of these spheres.
         (self.statistics.min, self.statistics.max, self.crowd) = (min, max, None);
         self
+    }
+
+    /// The kinds of the bricks, whose spheres have the given structure.
+    #[cfg(feature = "gpu")]
+    pub(crate) fn kinds(&self, structure: Structure) -> Vec<BrickKind> {
+        let has_spheres = self.statistics.count > 0 || self.cones.is_none();
+        let of_spheres = has_spheres.then_some(BrickKind { structure, primitive: Primitive::Sphere });
+        let of_cones = self.cones.map(|cones| BrickKind { structure: cones.structure, primitive: Primitive::Cone });
+        of_spheres.into_iter().chain(of_cones).collect()
     }
 
     /// The number of bytes of all buffers.

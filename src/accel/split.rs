@@ -6,6 +6,7 @@
 use glam::{Vec3, Vec3A};
 
 use super::statistics::Margins;
+use crate::geometry::cone::ConeInFrame;
 
 /// A box in the scene's frame, in f32. [`Extent::EMPTY`] contains nothing.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -53,17 +54,52 @@ impl Extent {
     }
 }
 
-/// A sphere during the building of a tree, with the data needed for sorting and for bounding boxes.
+/// How far a shape reaches from its centre along each axis: one number for spheres, three for others.
+pub(super) trait Reach: Copy + Send + Sync {
+    fn along(self) -> Vec3A;
+}
+
+impl Reach for f32 {
+    #[inline]
+    fn along(self) -> Vec3A {
+        Vec3A::splat(self)
+    }
+}
+
+impl Reach for [f32; 3] {
+    #[inline]
+    fn along(self) -> Vec3A {
+        self.into()
+    }
+}
+
+/// A shape during the building of a tree, with the data needed for sorting and for bounding boxes.
 #[derive(Clone, Copy, Debug)]
-pub(super) struct Item {
+pub(super) struct Item<R> {
     pub(super) center: [f32; 3],
-    /// At least radius plus margin, and large enough that `center ± reach` in f32 contains the inflated sphere.
-    pub(super) reach: f32,
+    /// At least radius plus margin, and large enough that `center ± reach` in f32 contains the inflated shape.
+    pub(super) reach: R,
     /// Index in input order.
     pub(super) id: u32,
 }
 
-impl Item {
+impl Item<[f32; 3]> {
+    /// Makes one item for every cone.
+    pub(super) fn of_cones(cones: &[ConeInFrame], margin: f32) -> Vec<Self> {
+        let item = |(id, cone): (usize, &ConeInFrame)| {
+            let [low, high] = cone.corners();
+            let center = (0.5 * (low + high)).as_vec3();
+            let largest = low.abs().max(high.abs()).max_element().max(margin.into());
+            // Roundings of numbers that are at most 4 · largest: of the centre and the reach, and of their sum.
+            let slack = f64::from(margin) + largest * f64::from(8.0 * f32::EPSILON);
+            let reach = (0.5 * (high - low) + slack).as_vec3().to_array();
+            Self { center: center.to_array(), reach, id: id as u32 }
+        };
+        cones.iter().enumerate().map(item).collect()
+    }
+}
+
+impl Item<f32> {
     /// Makes one item for every sphere (centre, radius).
     pub(super) fn all(spheres: &[[f32; 4]], margins: &Margins) -> Vec<Self> {
         let item = |(id, sphere): (usize, &[f32; 4])| {
@@ -77,7 +113,9 @@ impl Item {
         };
         spheres.iter().enumerate().map(item).collect()
     }
+}
 
+impl<R: Reach> Item<R> {
     #[inline]
     pub(super) fn center(&self) -> Vec3A {
         Vec3::from_array(self.center).into()
@@ -85,7 +123,7 @@ impl Item {
 
     #[inline]
     pub(super) fn extent(&self) -> Extent {
-        let (center, reach) = (self.center(), Vec3A::splat(self.reach));
+        let (center, reach) = (self.center(), self.reach.along());
         Extent { low: center - reach, high: center + reach }
     }
 
@@ -107,16 +145,16 @@ impl Item {
 
 const BINS: usize = 16;
 
-/// A set of spheres, their bounding box, and the bounding box of their centres.
+/// A set of shapes, their bounding box, and the bounding box of their centres.
 #[derive(Debug)]
-pub(super) struct Cluster<'a> {
-    pub(super) items: &'a mut [Item],
+pub(super) struct Cluster<'a, R> {
+    pub(super) items: &'a mut [Item<R>],
     pub(super) extent: Extent,
     pub(super) centers: Extent,
 }
 
-impl<'a> Cluster<'a> {
-    pub(super) fn new(items: &'a mut [Item]) -> Self {
+impl<'a, R: Reach> Cluster<'a, R> {
+    pub(super) fn new(items: &'a mut [Item<R>]) -> Self {
         let (extent, centers) = Item::extents(items);
         Self { items, extent, centers }
     }
@@ -139,7 +177,7 @@ impl<'a> Cluster<'a> {
         let low = self.centers.low[axis];
         let scale = BINS as f32 / (self.centers.high[axis] - low);
         // The conversion saturates and turns NaN into 0.
-        let bin_of = |item: &Item| (((item.center[axis] - low) * scale) as usize).min(BINS - 1);
+        let bin_of = |item: &Item<R>| (((item.center[axis] - low) * scale) as usize).min(BINS - 1);
         let mut bins = [Bin::EMPTY; BINS];
         for item in self.items.iter() {
             let bin = &mut bins[bin_of(item)];
@@ -204,7 +242,7 @@ fn cheapest_cut(bins: &[Bin; BINS]) -> Option<(usize, Bin, Bin)> {
 }
 
 /// Moves the items for which `first` is true to the front, and returns their number.
-fn partition(items: &mut [Item], first: impl Fn(&Item) -> bool) -> usize {
+fn partition<R>(items: &mut [Item<R>], first: impl Fn(&Item<R>) -> bool) -> usize {
     let (mut low, mut high) = (0, items.len());
     while low < high {
         if first(&items[low]) {

@@ -119,17 +119,20 @@ pub enum Primitive {
     /// A sphere: a centre and a radius.
     #[default]
     Sphere,
+    /// A cone between two discs. A cylinder is one with equal radii.
+    Cone,
 }
 
 impl Primitive {
     /// All primitives.
-    pub const ALL: &'static [Self] = &[Self::Sphere];
+    pub const ALL: &'static [Self] = &[Self::Sphere, Self::Cone];
 
     /// The name in reports.
     #[must_use]
     pub const fn name(self) -> &'static str {
         match self {
             Self::Sphere => "sphere",
+            Self::Cone => "cone",
         }
     }
 }
@@ -144,8 +147,19 @@ pub struct BrickKind {
 }
 
 impl BrickKind {
-    /// All combinations of the given structures and primitives.
+    /// The combinations of the given structures and primitives for which there are kernels.
     pub fn of<'a>(structures: &'a [Structure], primitives: &'a [Primitive]) -> impl Iterator<Item = Self> + 'a {
-        primitives.iter().flat_map(|&primitive| structures.iter().map(move |&structure| Self { structure, primitive }))
+        let all = primitives
+            .iter()
+            .flat_map(|&primitive| structures.iter().map(move |&structure| Self { structure, primitive }));
+        all.filter(|kind| kind.exists())
+    }
+
+    /// Whether the structure can find these shapes. Cells and tiles list spheres only.
+    const fn exists(self) -> bool {
+        match self.primitive {
+            Primitive::Sphere => true,
+            Primitive::Cone => matches!(self.structure, Structure::List | Structure::WideTree),
+        }
     }
 }

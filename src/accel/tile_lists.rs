@@ -200,7 +200,7 @@ impl<'a> TileBricks<'a> {
         let nears = taken.iter().rev().map(|seen| seen.near).collect();
         let places = listed.into_iter().map(AtomicU32::into_inner).collect();
         let lists = TileLists { columns: columns as u32, starts, places, nears };
-        Brick { index: Index::Tiles(lists), spheres, ids }
+        Brick { index: Index::Tiles(lists), spheres, cones: Vec::new(), ids }
     }
 
     /// How many of the nearest spheres fit into a brick.

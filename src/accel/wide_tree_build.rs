@@ -3,9 +3,10 @@
 //! The spheres of a node are split in two, and so are the parts, until there are eight parts. Parts of at most three
 //! spheres are leaves. No binary tree is built first.
 
-use super::split::{Cluster, Extent, Item};
+use super::split::{Cluster, Extent, Item, Reach};
 use super::statistics::Margins;
 use super::wide_tree::{WIDE_BYTES_PER_SPHERE, WIDE_LEAF, WIDE_LEVELS, WideNode, WideTree, octant_slots};
+use crate::geometry::cone::ConeInFrame;
 use crate::parallel::{both, map_parts};
 
 /// Up to this number of spheres, a node has only leaves.
@@ -35,6 +36,12 @@ impl WideTree {
         let (nodes, ids, levels) = build(&mut items);
         Self { nodes, ids, levels, margins }
     }
+
+    /// Builds the tree of cones, with one margin.
+    pub(crate) fn of_cones(cones: &[ConeInFrame], margin: f32) -> Self {
+        let (nodes, ids, levels) = build(&mut Item::of_cones(cones, margin));
+        Self { nodes, ids, levels, margins: Margins::one(margin) }
+    }
 }
 
 /// The largest number of nodes of a tree of `count` spheres.
@@ -60,14 +67,14 @@ pub(super) fn levels_by_halves(count: usize) -> u32 {
 /// [`levels_by_halves`]`(n)` is at most that number. It holds for the root because there are fewer than 2³² spheres,
 /// which need eleven levels. If it is less, any split is allowed, since a child has fewer spheres than its parent. If
 /// it is equal, splits are in half, and a child needs one level less than its parent.
-fn build(items: &mut [Item]) -> (Vec<WideNode>, Vec<u32>, u32) {
+fn build<R: Reach>(items: &mut [Item<R>]) -> (Vec<WideNode>, Vec<u32>, u32) {
     let most = max_nodes(items.len());
     let by_cost = nodes_by_level(items, false, most);
     if by_cost.0.len() <= most { by_cost } else { nodes_by_level(items, true, usize::MAX) }
 }
 
 /// Builds a tree level by level. Stops early if there are more than `most` nodes.
-fn nodes_by_level(items: &mut [Item], in_halves: bool, most: usize) -> (Vec<WideNode>, Vec<u32>, u32) {
+fn nodes_by_level<R: Reach>(items: &mut [Item<R>], in_halves: bool, most: usize) -> (Vec<WideNode>, Vec<u32>, u32) {
     let mut ids = Vec::with_capacity(items.len());
     if items.is_empty() {
         return (vec![WideNode::empty()], ids, 1);
@@ -102,20 +109,20 @@ fn nodes_by_level(items: &mut [Item], in_halves: bool, most: usize) -> (Vec<Wide
 }
 
 /// A node whose children have no indices yet.
-struct Draft<'a> {
+struct Draft<'a, R> {
     node: WideNode,
     /// The ids of the spheres in its leaves.
     ids: [u32; LEAVES_ONLY],
     leaf_spheres: usize,
     /// The inner children in the order of their slots.
-    inner: Vec<Cluster<'a>>,
+    inner: Vec<Cluster<'a, R>>,
 }
 
 fn wanted_slots(count: usize) -> usize {
     count.div_ceil(SPHERES_PER_CHILD).min(8)
 }
 
-fn draft(cluster: Cluster<'_>, level: u32, in_halves: bool) -> Draft<'_> {
+fn draft<R: Reach>(cluster: Cluster<'_, R>, level: u32, in_halves: bool) -> Draft<'_, R> {
     let mut parts = Vec::with_capacity(8);
     if cluster.len() <= LEAVES_ONLY {
         cut_into_leaves(cluster, &mut parts);
@@ -157,7 +164,7 @@ fn draft(cluster: Cluster<'_>, level: u32, in_halves: bool) -> Draft<'_> {
 }
 
 /// Splits a cluster into at most `slots` parts. Each side of a split gets slots in proportion to its spheres.
-fn cut<'a>(cluster: Cluster<'a>, slots: usize, in_halves: bool, parts: &mut Vec<Cluster<'a>>) {
+fn cut<'a, R: Reach>(cluster: Cluster<'a, R>, slots: usize, in_halves: bool, parts: &mut Vec<Cluster<'a, R>>) {
     let count = cluster.len();
     if slots == 1 || count <= WIDE_LEAF {
         parts.push(cluster);
@@ -182,7 +189,7 @@ fn cut<'a>(cluster: Cluster<'a>, slots: usize, in_halves: bool, parts: &mut Vec<
 }
 
 /// Splits a cluster into leaves. All of them are full except one.
-fn cut_into_leaves<'a>(cluster: Cluster<'a>, parts: &mut Vec<Cluster<'a>>) {
+fn cut_into_leaves<'a, R: Reach>(cluster: Cluster<'a, R>, parts: &mut Vec<Cluster<'a, R>>) {
     if cluster.len() <= WIDE_LEAF {
         parts.push(cluster);
         return;

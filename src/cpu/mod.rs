@@ -12,7 +12,6 @@ use crate::parallel;
 use crate::render::{Decision, NearestPicture, Picture, PrimarySettings, RenderSettings, Watch};
 use crate::smooth::{SmoothPicture, first_half};
 
-pub(crate) mod cone;
 mod denoise;
 pub(crate) mod light;
 mod pace;

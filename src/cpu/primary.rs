@@ -4,28 +4,32 @@ use std::ops::Range;
 
 use super::pace::{Pace, RenderError};
 use super::search::Search;
-use super::sphere::intersect;
+use super::sphere;
 use crate::camera::View;
+use crate::geometry::cone_crossing;
 use crate::geometry::math::wide;
 use crate::geometry::ray::{Hit, Ray};
 use crate::image::{Image, LayerSet, Pixel, RowMut};
 use crate::parallel::for_each;
 use crate::render::{Decision, Picture, PrimarySettings, Progress, Shading, Watch};
-use crate::scene::Scene;
+use crate::scene::{Scene, Shape};
 
-/// The nearest hit in front of the ray's origin. If several spheres are equally near, the one with the smallest id.
-/// `None` for a miss. If `search` is a reference to a scene, every sphere is tested.
+/// The nearest hit in front of the ray's origin. If several shapes are equally near, the one with the smallest id.
+/// `None` for a miss. If `search` is a reference to a scene, every shape is tested.
 #[must_use]
 pub fn trace<'a>(search: impl Into<Search<'a>>, ray_in_world: &Ray) -> Option<Hit> {
     let search = search.into();
     let ray = Ray { origin: ray_in_world.origin - search.scene().origin(), ..*ray_in_world };
-    let test = |[x, y, z, radius]: [f32; 4]| intersect(&ray, wide([x, y, z]), radius.into());
-    let nearest = search.nearest(&ray, |sphere| test(sphere).map(|(t, _)| t))?;
-    let (t, normal) = test(nearest.sphere)?;
+    let test = |shape: Shape| match shape {
+        Shape::Sphere([x, y, z, radius]) => sphere::intersect(&ray, wide([x, y, z]), radius.into()),
+        Shape::Cone(cone) => cone_crossing::intersect(&ray, &cone),
+    };
+    let nearest = search.nearest(&ray, |shape| test(shape).map(|(t, _)| t))?;
+    let (t, normal) = test(nearest.shape)?;
     Some(Hit { t, id: nearest.id, normal })
 }
 
-/// The pixel of a primary ray that hits a sphere.
+/// The pixel of a primary ray that hits a shape.
 #[must_use]
 pub fn shade(scene: &Scene, primary: &PrimarySettings, ray: &Ray, hit: &Hit) -> Pixel {
     let surface = scene.color(hit.id).to_array();

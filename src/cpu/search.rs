@@ -1,8 +1,10 @@
-//! Two ways to find the spheres that rays hit: testing every sphere, or only those that a structure cannot rule out.
+//! Two ways to find the shapes that rays hit: testing every shape, or only those that a structure cannot rule out.
 //!
-//! Both ways apply the same tests in f64 and give the same answers, to the bit. Testing every sphere is the reference,
+//! Both ways apply the same tests in f64 and give the same answers, to the bit. Testing every shape is the reference,
 //! which needs no proof. The proofs that structures miss no sphere are in `accel/wide_tree_visit.rs` and
-//! `accel/grid_visit.rs`.
+//! `accel/grid_visit.rs`. Cones have a tree of their own, whose boxes hold them with a margin of 2⁻¹⁷ of the scene's
+//! diagonal. The errors of a cone's test are far smaller: it counts from the middle of the cone's axis, so that those that
+//! grow with the distance of the ray's origin are only those of that vector, as for spheres.
 
 use std::ops::Range;
 
@@ -12,25 +14,26 @@ use crate::accel::grid::Grid;
 use crate::accel::wide_tree::WideTree;
 use crate::accel::wide_tree_visit::BoxRay;
 use crate::accel::{AccelChoice, AccelPlan, Index, Structure};
+use crate::geometry::cone::ConeInFrame;
 use crate::geometry::ray::Ray;
 use crate::parallel::try_map;
-use crate::scene::{Scene, SceneError};
+use crate::scene::{Scene, SceneError, Shape};
 
-/// A scene, and the way in which rays find its spheres. Both ways give the same picture.
+/// A scene, and the way in which rays find its shapes. Both ways give the same picture.
 ///
-/// A reference to a [`Scene`] stands for [`Search::EverySphere`], and one to a [`SearchStructure`] for
+/// A reference to a [`Scene`] stands for [`Search::EveryShape`], and one to a [`SearchStructure`] for
 /// [`Search::Structure`].
 #[derive(Clone, Copy, Debug)]
 pub enum Search<'a> {
-    /// Each ray tests every sphere: the reference, for small scenes.
-    EverySphere(&'a Scene),
-    /// Each ray tests the spheres that the structure cannot rule out.
+    /// Each ray tests every shape: the reference, for small scenes.
+    EveryShape(&'a Scene),
+    /// Each ray tests the shapes that the structure cannot rule out.
     Structure(&'a SearchStructure<'a>),
 }
 
 impl<'a> From<&'a Scene> for Search<'a> {
     fn from(scene: &'a Scene) -> Self {
-        Self::EverySphere(scene)
+        Self::EveryShape(scene)
     }
 }
 
@@ -40,22 +43,25 @@ impl<'a> From<&'a SearchStructure<'a>> for Search<'a> {
     }
 }
 
-/// Up to this number of spheres, testing all takes less time than a structure.
+/// Up to this number of spheres, and of cones, testing all takes less time than a structure.
 const FEW: usize = 16;
 
-/// A structure that skips spheres that a ray cannot hit. The CPU reference becomes fast, and its pictures stay
-/// identical. It is a grid if all spheres are opaque and a plan chooses a grid, and otherwise an 8-wide tree.
+/// A structure that skips shapes that a ray cannot hit. The CPU reference becomes fast, and its pictures stay
+/// identical. It is a grid if all spheres are opaque and a plan chooses a grid, and otherwise an 8-wide tree. Cones have an
+/// 8-wide tree.
 #[derive(Debug)]
 pub struct SearchStructure<'a> {
     scene: &'a Scene,
     kind: Kind,
+    /// `None` for few cones.
+    pub(super) cones: Option<TreeIndex<ConeInFrame>>,
 }
 
 #[derive(Debug)]
 enum Kind {
     /// No structure, for few spheres.
     List,
-    Tree(TreeIndex),
+    Tree(TreeIndex<[f32; 4]>),
     Grid(GridIndex),
 }
 
@@ -70,6 +76,9 @@ pub struct SearchPlan<'a> {
 impl<'a> SearchPlan<'a> {
     /// The largest number of bytes per sphere during the building of a tree. 34 of them remain.
     const TREE_BYTES: u64 = 62;
+
+    /// The largest number of bytes per cone.
+    const CONE_BYTES: u64 = 86;
 
     /// Plans a structure.
     #[must_use]
@@ -96,6 +105,7 @@ impl<'a> SearchPlan<'a> {
             Some(plan) => plan.host_bytes(),
             None => Self::TREE_BYTES * self.scene.len() as u64,
         }
+        .saturating_add(Self::CONE_BYTES * self.scene.cones().len() as u64)
     }
 
     /// Builds the structure, on all cores.
@@ -108,9 +118,10 @@ impl<'a> SearchPlan<'a> {
         let kind = match grid {
             _ if scene.len() <= FEW => Kind::List,
             Some(grid) => Kind::Grid(grid),
-            None => Kind::Tree(TreeIndex::new(scene)?),
+            None => Kind::Tree(TreeIndex::of_spheres(scene)?),
         };
-        Ok(SearchStructure { scene, kind })
+        let cones = (scene.cones().len() > FEW).then(|| TreeIndex::of_cones(scene)).transpose()?;
+        Ok(SearchStructure { scene, kind, cones })
     }
 }
 
@@ -127,13 +138,13 @@ impl<'a> SearchStructure<'a> {
     #[cfg(test)]
     pub(super) fn of(scene: &'a Scene, structure: Structure) -> Self {
         let kind = match structure {
-            Structure::WideTree => Kind::Tree(TreeIndex::new(scene).unwrap()),
+            Structure::WideTree => Kind::Tree(TreeIndex::of_spheres(scene).unwrap()),
             structure => {
                 let plan = AccelPlan::of(scene.spheres(), structure, u64::MAX);
                 Kind::Grid(GridIndex::new(&plan, scene).unwrap())
             }
         };
-        Self { scene, kind }
+        Self { scene, kind, cones: None }
     }
 
     /// The scene that the structure searches.
@@ -142,21 +153,40 @@ impl<'a> SearchStructure<'a> {
         self.scene
     }
 
-    /// Calls `offer` with every sphere, and its id, that the ray may hit at or before `limit`. The ray is in the
+    /// Calls `offer` with every shape, and its id, that the ray may hit at or before `limit`. The ray is in the
     /// scene's frame. `offer` returns the new limit, or a negative number to end the search.
     #[inline]
-    fn visit(&self, ray: &Ray, limit: f64, mut offer: impl FnMut(u32, [f32; 4]) -> f64) {
+    fn visit(&self, ray: &Ray, limit: f64, mut offer: impl FnMut(u32, Shape) -> f64) {
+        let mut left = limit;
+        let mut offer_sphere = |id, sphere| {
+            left = offer(id, Shape::Sphere(sphere));
+            left
+        };
         let is_done = match &self.kind {
             Kind::List => false,
-            Kind::Tree(tree) => tree.visit(ray, limit, &mut offer),
-            Kind::Grid(grid) => grid.visit(ray, limit, &mut offer),
+            Kind::Tree(tree) => tree.visit(ray, limit, &mut offer_sphere),
+            Kind::Grid(grid) => grid.visit(ray, limit, &mut offer_sphere),
         };
         if !is_done {
-            for (id, sphere) in (0..).zip(self.scene.spheres()) {
-                if offer(id, *sphere) < 0.0 {
-                    break;
-                }
-            }
+            offer_all(self.scene.spheres(), &mut offer_sphere);
+        }
+        let (cones, first) = (self.scene.cones(), self.scene.len() as u32);
+        if cones.is_empty() || left < 0.0 {
+            return;
+        }
+        let mut offer_cone = |index: u32, cone| offer(first + index, Shape::Cone(cone));
+        if !self.cones.as_ref().is_some_and(|tree| tree.visit(ray, left, &mut offer_cone)) {
+            offer_all(cones, &mut offer_cone);
+        }
+    }
+}
+
+/// Offers all shapes in order, until one ends the search.
+#[inline]
+fn offer_all<T: Copy>(all: &[T], offer: &mut impl FnMut(u32, T) -> f64) {
+    for (index, shape) in (0..).zip(all) {
+        if offer(index, *shape) < 0.0 {
+            break;
         }
     }
 }
@@ -165,7 +195,7 @@ impl<'a> SearchStructure<'a> {
 #[derive(Clone, Copy)]
 pub(super) struct NearestHit {
     pub(super) id: u32,
-    pub(super) sphere: [f32; 4],
+    pub(super) shape: Shape,
     pub(super) t: f64,
 }
 
@@ -174,31 +204,31 @@ impl<'a> Search<'a> {
     #[must_use]
     pub fn scene(&self) -> &'a Scene {
         match self {
-            Self::EverySphere(scene) => scene,
+            Self::EveryShape(scene) => scene,
             Self::Structure(structure) => structure.scene,
         }
     }
 
     /// The nearest hit of a ray in the scene's frame. At equal distances, the smallest id wins. `distance` takes a
-    /// sphere, and returns the distance of a hit, which is not NaN.
+    /// shape, and returns the distance of a hit, which is not NaN.
     #[inline]
-    pub(super) fn nearest(&self, ray: &Ray, distance: impl Fn([f32; 4]) -> Option<f64>) -> Option<NearestHit> {
+    pub(super) fn nearest(&self, ray: &Ray, distance: impl Fn(Shape) -> Option<f64>) -> Option<NearestHit> {
         let mut nearest: Option<NearestHit> = None;
         match self {
-            Self::EverySphere(scene) => {
-                for (id, sphere) in (0..).zip(scene.spheres()) {
-                    let Some(t) = distance(*sphere) else { continue };
+            Self::EveryShape(scene) => {
+                for (id, shape) in shapes(scene) {
+                    let Some(t) = distance(shape) else { continue };
                     // Ids ascend, so `<` prefers the smaller id at equal distances.
                     if nearest.is_none_or(|nearest| t < nearest.t) {
-                        nearest = Some(NearestHit { id, sphere: *sphere, t });
+                        nearest = Some(NearestHit { id, shape, t });
                     }
                 }
             }
-            Self::Structure(structure) => structure.visit(ray, f64::INFINITY, |id, sphere| {
-                if let Some(t) = distance(sphere)
+            Self::Structure(structure) => structure.visit(ray, f64::INFINITY, |id, shape| {
+                if let Some(t) = distance(shape)
                     && nearest.is_none_or(|nearest| (t, id) < (nearest.t, nearest.id))
                 {
-                    nearest = Some(NearestHit { id, sphere, t });
+                    nearest = Some(NearestHit { id, shape, t });
                 }
                 nearest.map_or(f64::INFINITY, |nearest| nearest.t)
             }),
@@ -206,16 +236,16 @@ impl<'a> Search<'a> {
         nearest
     }
 
-    /// Whether `test` is true for any sphere. It may be true only for spheres that the ray hits before `t_max`. The ray
+    /// Whether `test` is true for any shape. It may be true only for shapes that the ray hits before `t_max`. The ray
     /// is in the scene's frame.
     #[inline]
-    pub(super) fn any(&self, ray: &Ray, t_max: f64, test: impl Fn(u32, [f32; 4]) -> bool) -> bool {
+    pub(super) fn any(&self, ray: &Ray, t_max: f64, test: impl Fn(u32, Shape) -> bool) -> bool {
         match self {
-            Self::EverySphere(scene) => (0..).zip(scene.spheres()).any(|(id, sphere)| test(id, *sphere)),
+            Self::EveryShape(scene) => shapes(scene).any(|(id, shape)| test(id, shape)),
             Self::Structure(structure) => {
                 let mut is_any = false;
-                structure.visit(ray, t_max, |id, sphere| {
-                    is_any = is_any || test(id, sphere);
+                structure.visit(ray, t_max, |id, shape| {
+                    is_any = is_any || test(id, shape);
                     if is_any { f64::NEG_INFINITY } else { t_max }
                 });
                 is_any
@@ -224,35 +254,54 @@ impl<'a> Search<'a> {
     }
 }
 
-/// An 8-wide tree without a margin.
-#[derive(Debug)]
-pub(super) struct TreeIndex {
-    pub(super) tree: WideTree,
-    /// Two opposite corners of a box around all spheres.
-    pub(super) corners: Option<[DVec3; 2]>,
-    /// The spheres in the order of the tree.
-    spheres: Vec<[f32; 4]>,
+/// All shapes of a scene, with their ids.
+fn shapes(scene: &Scene) -> impl Iterator<Item = (u32, Shape)> {
+    let spheres = scene.spheres().iter().map(|sphere| Shape::Sphere(*sphere));
+    (0..).zip(spheres.chain(scene.cones().iter().map(|cone| Shape::Cone(*cone))))
 }
 
-impl TreeIndex {
-    pub(super) fn new(scene: &Scene) -> Result<Self, SceneError> {
-        let all = scene.spheres();
-        let tree = WideTree::build(all, 0.0);
-        let spheres =
+/// An 8-wide tree of shapes of one kind.
+#[derive(Debug)]
+pub(super) struct TreeIndex<T> {
+    pub(super) tree: WideTree,
+    /// Two opposite corners of a box around all shapes.
+    pub(super) corners: Option<[DVec3; 2]>,
+    /// The shapes in the order of the tree.
+    shapes: Vec<T>,
+}
+
+impl TreeIndex<[f32; 4]> {
+    /// A tree of a scene's spheres, without a margin.
+    pub(super) fn of_spheres(scene: &Scene) -> Result<Self, SceneError> {
+        Self::new(scene.spheres(), WideTree::build(scene.spheres(), 0.0))
+    }
+}
+
+impl TreeIndex<ConeInFrame> {
+    /// A tree of a scene's cones, with a margin.
+    pub(super) fn of_cones(scene: &Scene) -> Result<Self, SceneError> {
+        let diagonal = scene.bounds_to_frame().size().length();
+        Self::new(scene.cones(), WideTree::of_cones(scene.cones(), (diagonal / f64::from(1 << 17)) as f32))
+    }
+}
+
+impl<T: Copy + Send + Sync> TreeIndex<T> {
+    fn new(all: &[T], tree: WideTree) -> Result<Self, SceneError> {
+        let shapes =
             try_map(all.len(), |i| all[tree.ids[i] as usize]).map_err(|_| SceneError::Memory { count: all.len() })?;
         let corners = tree.corners();
-        Ok(Self { tree, corners, spheres })
+        Ok(Self { tree, corners, shapes })
     }
 
     /// Calls `offer` as [`SearchStructure::visit`] does. Returns false if it cannot search for this ray.
     #[inline]
-    pub(super) fn visit(&self, ray: &Ray, limit: f64, offer: &mut impl FnMut(u32, [f32; 4]) -> f64) -> bool {
+    pub(super) fn visit(&self, ray: &Ray, limit: f64, offer: &mut impl FnMut(u32, T) -> f64) -> bool {
         let boxes = self.corners.and_then(|c| BoxRay::new(ray.origin, ray.direction, c));
         let Some(boxes) = boxes else { return false };
         let mut left = limit;
         self.tree.visit(&boxes, limit, |range: Range<usize>| {
-            for (id, sphere) in self.tree.ids[range.clone()].iter().zip(&self.spheres[range]) {
-                left = offer(*id, *sphere);
+            for (id, shape) in self.tree.ids[range.clone()].iter().zip(&self.shapes[range]) {
+                left = offer(*id, *shape);
                 if left < 0.0 {
                     break;
                 }

@@ -7,11 +7,15 @@ use super::search::{GridIndex, Search, SearchStructure, TreeIndex};
 use super::sphere::intersect;
 use crate::accel::wide_tree_visit::BoxRay;
 use crate::accel::{AccelPlan, Structure};
+use crate::geometry::cone::ConeInFrame;
+use crate::geometry::cone_crossing;
 use crate::geometry::math::wide;
 use crate::geometry::ray::Ray;
 use crate::image::color::LinearRgb;
+use crate::recording::cone_rays::rays_and_cones;
+use crate::scene::cone::{Caps, Cone};
 use crate::scene::sphere_array::SphereArray;
-use crate::scene::{Appearance, Colors, Scene};
+use crate::scene::{Appearance, Colors, Scene, Shape};
 
 #[allow(dead_code, reason = "some of its scenes are for other tests")]
 #[path = "../../tests/support/spheres.rs"]
@@ -75,11 +79,14 @@ fn ray(random: &mut Rng, spheres: &[[f32; 4]]) -> Ray {
     }
 }
 
-fn distance(ray: &Ray) -> impl Fn([f32; 4]) -> Option<f64> {
-    |[x, y, z, radius]| intersect(ray, wide([x, y, z]), radius.into()).map(|(t, _)| t)
+fn distance(ray: &Ray) -> impl Fn(Shape) -> Option<f64> {
+    |shape| match shape {
+        Shape::Sphere([x, y, z, radius]) => intersect(ray, wide([x, y, z]), radius.into()).map(|(t, _)| t),
+        Shape::Cone(cone) => cone_crossing::intersect(ray, &cone).map(|(t, _)| t),
+    }
 }
 
-/// The id of the nearest sphere and the bits of its distance.
+/// The id of the nearest shape and the bits of its distance.
 fn nearest(search: Search<'_>, ray: &Ray) -> Option<(u32, u64)> {
     search.nearest(ray, distance(ray)).map(|nearest| (nearest.id, nearest.t.to_bits()))
 }
@@ -103,7 +110,7 @@ fn structures_have_the_answers_of_testing_every_sphere() {
             let limits = [t, t.next_up(), t * 3.0 * random.f64(), f64::INFINITY];
             let any = |search: Search<'_>| {
                 limits.map(|t_max| {
-                    let is_before = |_, sphere| hit(sphere).is_some_and(|t| t < t_max);
+                    let is_before = |_, shape| hit(shape).is_some_and(|t| t < t_max);
                     search.any(&ray, t_max, is_before)
                 })
             };
@@ -164,7 +171,7 @@ fn lost([of_margin, of_rounding]: [f64; 2]) -> f64 {
     let (mut hits, mut losses) = (0, 0);
     for (_, spheres) in scenes() {
         let scene = scene(&spheres);
-        let tree = TreeIndex::new(&scene).unwrap();
+        let tree = TreeIndex::of_spheres(&scene).unwrap();
         for _ in 0..1500 {
             let ray = ray(&mut random, scene.spheres());
             let Some((id, t)) = nearest(Search::from(&scene), &ray) else { continue };
@@ -198,4 +205,36 @@ fn an_empty_scene_has_no_hits() {
     let tree = SearchStructure::new(&scene).unwrap();
     let ray = Ray { origin: DVec3::ZERO, direction: DVec3::X };
     assert_eq!(nearest(Search::from(&tree), &ray), None);
+}
+
+/// Rays to rims, tips and tangent points of cones and needles of all sizes, among many others and some spheres.
+#[test]
+fn trees_of_cones_have_the_answers_of_testing_every_cone() {
+    let mut hits = 0;
+    for part in rays_and_cones(6400).chunks(64) {
+        let as_given = |cone: &ConeInFrame| Cone {
+            start: wide(cone.start).to_array(),
+            end: wide(cone.end).to_array(),
+            radii: cone.radii(),
+            caps: match cone.are_closed() {
+                [false, false] => Caps::None,
+                [true, false] => Caps::First,
+                [false, true] => Caps::Second,
+                [true, true] => Caps::Both,
+            },
+        };
+        let cones: Vec<Cone> =
+            part.iter().map(|input| as_given(&input.cone)).filter(|cone| cone.check().is_ok()).collect();
+        let balls = spheres::random(20, 7, |_| 0.05).iter().map(|ball| ball.map(f64::from)).collect();
+        let scene = Scene::from_shapes(SphereArray::F64(balls), &cones, LinearRgb::WHITE.into()).unwrap();
+        let structure = SearchStructure::new(&scene).unwrap();
+        assert!(structure.cones.is_some() && scene.shape_count() > 80);
+        for input in part {
+            let ray = Ray { origin: wide(input.origin) - scene.origin(), direction: wide(input.direction) };
+            let wanted = nearest(Search::from(&scene), &ray);
+            assert_eq!(wanted, nearest(Search::from(&structure), &ray), "{ray:?}");
+            hits += u32::from(wanted.is_some_and(|(id, _)| id >= 20));
+        }
+    }
+    assert!(hits > 3000, "{hits}");
 }

@@ -174,9 +174,7 @@ impl<'a> Subject<'a> {
         };
         let reach = parallel::map_chunks(self.spheres, of_chunk).into_iter().fold(nothing, most);
         let of_cones = |_, chunk: &[ConeInFrame]| {
-            chunk.iter().fold(nothing, |reach, cone| {
-                most(reach, directions.map(|n| n.dot(shift) + cone.support(n)))
-            })
+            chunk.iter().fold(nothing, |reach, cone| most(reach, directions.map(|n| n.dot(shift) + cone.support(n))))
         };
         parallel::map_chunks(self.cones, of_cones).into_iter().fold(reach, most)
     }

@@ -154,6 +154,12 @@ pub enum GpuError {
          settings"
     )]
     NoOccluders,
+    /// Light was requested of a device for a scene with cones or cylinders.
+    #[error(
+        "devices do not light scenes with cones or cylinders yet; render with the CPU reference (`--backend cpu`), or \
+         without random light (`--style clear` or `--style flat`)"
+    )]
+    LitCones,
     /// A live picture was requested of a scene, or with settings, that live pictures do not support.
     #[error("a live picture needs {needs}; show a `LitPicture` instead")]
     NotLive {

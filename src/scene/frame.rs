@@ -24,9 +24,7 @@ pub(super) fn check_count(count: usize) -> Result<(), SceneError> {
     let most = u32::MAX;
     match count < most as usize {
         true => Ok(()),
-        false => {
-            Err(SceneError::Invalid(format!("{count} spheres are too many; ids are u32 and {most} means a miss")))
-        }
+        false => Err(SceneError::Invalid(format!("{count} spheres are too many; ids are u32 and {most} means a miss"))),
     }
 }
 
@@ -41,9 +39,8 @@ pub(super) fn bounds_of_cones(cones: &[Cone]) -> Result<Option<Bounds>, SceneErr
 
 /// Converts checked cones to f32 in the frame at `origin`.
 pub(super) fn cones_in_frame(cones: &[Cone], origin: DVec3) -> Result<Vec<ConeInFrame>, SceneError> {
-    let in_frame = |(index, cone): (usize, &Cone)| {
-        cone.in_frame(origin).map_err(|error| SceneError::Cone { index, error })
-    };
+    let in_frame =
+        |(index, cone): (usize, &Cone)| cone.in_frame(origin).map_err(|error| SceneError::Cone { index, error });
     cones.iter().enumerate().map(in_frame).collect()
 }
 

@@ -30,10 +30,10 @@ pub mod sphere;
 pub mod sphere_array;
 mod update;
 
+pub use crate::geometry::cone::ConeInFrame;
 pub(crate) use appearance::SceneAppearance;
 #[cfg(feature = "gpu")]
 pub(crate) use appearance::alpha_of;
-pub use crate::geometry::cone::ConeInFrame;
 pub use appearance::{Appearance, Colors};
 pub use color_map::{ColorMap, ColorMapError};
 pub(crate) use duplicates::Duplicates;

@@ -15,6 +15,7 @@ mod support;
 
 mod adversary;
 mod bricks;
+mod cones;
 mod device;
 mod embedding;
 mod host;
@@ -39,6 +40,7 @@ fn main() {
         let groups = [
             adversary::trials(),
             bricks::trials(),
+            cones::trials(),
             light::trials(),
             pictures::trials(),
             parts::trials(),

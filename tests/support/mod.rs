@@ -3,6 +3,7 @@
 
 pub(crate) mod appearances;
 pub(crate) mod compare;
+pub(crate) mod cones;
 pub(crate) mod effort;
 pub(crate) mod hosts;
 pub(crate) mod legal_cameras;

@@ -34,7 +34,7 @@ impl Bsdf {
         // Clamped so that divisions by the cosine are safe.
         let out = DVec3::new(out.x, out.y, out.z.max(MIN_COSINE));
         let color = context.color(interaction.surface);
-        let Surface::Sphere(id) = interaction.surface else {
+        let Surface::Shape(id) = interaction.surface else {
             return Some(Self { out, kind: Kind::Lambert(Lambert { color, lobe: None }) });
         };
         let energy = |table: usize| energy::lookup(context.energy(id, table), out.z);

@@ -36,7 +36,7 @@ pub(super) struct LightingContext<'a> {
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) enum Surface {
     /// The sphere with this index.
-    Sphere(u32),
+    Shape(u32),
     /// The ground.
     Ground,
 }
@@ -114,21 +114,21 @@ impl<'a> LightingContext<'a> {
 
     pub(super) fn color(&self, surface: Surface) -> DVec3 {
         match surface {
-            Surface::Sphere(id) => rgb(self.scene.color(id)),
+            Surface::Shape(id) => rgb(self.scene.color(id)),
             Surface::Ground => self.ground.map_or(DVec3::ZERO, |ground| ground.color),
         }
     }
 
     pub(super) fn opacity(&self, surface: Surface) -> f64 {
         match surface {
-            Surface::Sphere(id) => self.scene.surface(id).opacity.into(),
+            Surface::Shape(id) => self.scene.surface(id).opacity.into(),
             Surface::Ground => 1.0,
         }
     }
 
     /// The radiance that a surface emits. `None` if it is not emissive.
     pub(super) fn emission(&self, surface: Surface) -> Option<DVec3> {
-        let Surface::Sphere(id) = surface else { return None };
+        let Surface::Shape(id) = surface else { return None };
         match self.scene.surface(id).material {
             Material::Emissive { strength } => Some(self.color(surface) * f64::from(strength)),
             _ => None,
@@ -204,7 +204,7 @@ impl LightingContext<'_> {
         let distance = to_center.length();
         let k = cone_of_sphere(radius, distance)?;
         let direction = TangentFrame::around(to_center / distance).to_scene(cone(u, k));
-        let surface = Surface::Sphere(id);
+        let surface = Surface::Shape(id);
         // The near side of the sphere, weighted by its opacity. Scattered rays find the light of the far side.
         let radiance = self.emission(surface)? * self.opacity(surface);
         let density = self.density_at_emitter(point, id)?;

@@ -223,7 +223,7 @@ fn lit(context: &LightingContext<'_>, studio: &Studio, view: &View<'_>, number: 
     let direction = ray.direction;
     let seen = VisibleSurface { context, studio, interaction, direction, address, m: 0 };
     let id = match interaction.surface {
-        Surface::Sphere(id) => id,
+        Surface::Shape(id) => id,
         Surface::Ground => NO_ID,
     };
     let Interaction { normal, distance: depth, .. } = interaction;

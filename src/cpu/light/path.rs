@@ -98,7 +98,7 @@ impl Path<'_> {
             self.found.albedo = context.color(interaction.surface).min(DVec3::ONE);
         }
         if let Some(emission) = context.emission(interaction.surface) {
-            let Surface::Sphere(id) = interaction.surface else { return None };
+            let Surface::Shape(id) = interaction.surface else { return None };
             let weight = self.weight(|point| self.context.density_at_emitter(point, id));
             self.found.color += self.throughput * emission * weight;
             return None;
@@ -167,7 +167,7 @@ impl Path<'_> {
 
     /// The absorption coefficient inside a sphere of glass. `None` for other surfaces.
     fn dielectric(&self, interaction: &Interaction) -> Option<DVec3> {
-        let Surface::Sphere(id) = interaction.surface else { return None };
+        let Surface::Shape(id) = interaction.surface else { return None };
         match self.context.scene.surface(id).material {
             Material::Dielectric { attenuation_distance, .. } => {
                 let color = self.context.color(interaction.surface).max(DVec3::splat(1e-4));

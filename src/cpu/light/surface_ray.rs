@@ -1,11 +1,14 @@
 //! Rays that remember the surface on which they start, so that they need no offset and no smallest distance.
 
-use glam::{DVec3, Vec4};
+use glam::DVec3;
 
 use super::context::{LightingContext, Surface};
 use crate::cpu::search::NearestHit;
 use crate::cpu::sphere::intersect;
+use crate::geometry::cone_crossing::crossings;
+use crate::geometry::math::wide;
 use crate::geometry::ray::Ray;
+use crate::scene::Shape;
 
 /// A ray in the scene's frame, and the surface that it leaves.
 #[derive(Clone, Copy, Debug)]
@@ -14,15 +17,15 @@ pub(super) struct SurfaceRay {
     pub(super) start: Start,
 }
 
-/// The start of a ray: the surface that it leaves, and the side. A ray leaves all spheres with the same centre and
-/// radius together, because only the first of them can be hit.
+/// The start of a ray: the surface that it leaves, and the side. A ray leaves all equal shapes
+/// together, because only the first of them can be hit.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) enum Start {
     /// At the camera.
     Free,
-    /// On a sphere, outwards. The ray cannot hit this sphere.
+    /// On a shape, outwards. The ray cannot hit this shape.
     Outside(u32),
-    /// On a sphere, inwards. The ray hits the far side of this sphere, unless something is nearer.
+    /// On a shape, inwards. The ray hits the far side of this shape, unless something is nearer.
     Inside(u32),
     /// On the ground, upwards. The ray cannot hit the ground.
     Ground,
@@ -38,7 +41,7 @@ pub(super) struct Interaction {
     pub(super) point: DVec3,
     /// Unit normal on the side from which the ray arrives.
     pub(super) normal: DVec3,
-    /// Whether the ray arrives from outside the sphere, or from above the ground.
+    /// Whether the ray arrives from outside the shape, or from above the ground.
     pub(super) is_outside: bool,
 }
 
@@ -47,8 +50,8 @@ impl Interaction {
     pub(super) fn this_side(&self) -> Start {
         match self.surface {
             Surface::Ground => Start::Ground,
-            Surface::Sphere(id) if self.is_outside => Start::Outside(id),
-            Surface::Sphere(id) => Start::Inside(id),
+            Surface::Shape(id) if self.is_outside => Start::Outside(id),
+            Surface::Shape(id) => Start::Inside(id),
         }
     }
 
@@ -56,26 +59,26 @@ impl Interaction {
     pub(super) fn other_side(&self) -> Start {
         match self.surface {
             Surface::Ground => Start::Ground,
-            Surface::Sphere(id) if self.is_outside => Start::Inside(id),
-            Surface::Sphere(id) => Start::Outside(id),
+            Surface::Shape(id) if self.is_outside => Start::Inside(id),
+            Surface::Shape(id) => Start::Outside(id),
         }
     }
 }
 
-/// The spheres that occlude light.
+/// The shapes that occlude light.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) enum Occluders {
-    /// All spheres.
+    /// All shapes.
     All,
-    /// Spheres whose opacity is 1.
+    /// Shapes whose opacity is 1.
     Opaque,
 }
 
-/// The nearest interaction. At equal distances, spheres win over the ground, and smaller ids over larger ones.
+/// The nearest interaction. At equal distances, shapes win over the ground, and smaller ids over larger ones.
 pub(super) fn nearest(context: &LightingContext<'_>, surface_ray: &SurfaceRay) -> Option<Interaction> {
     let ray = &surface_ray.ray;
-    let (start, own) = (surface_ray.start, start_sphere(context, surface_ray.start));
-    let distance = |sphere| hit_of(ray, start, own, sphere).map(|hit| hit.distance);
+    let (start, own) = (surface_ray.start, start_shape(context, surface_ray.start));
+    let distance = |shape| hit_of(ray, start, own, shape).map(|hit| hit.distance);
     let nearest = context.search.nearest(ray, distance);
     let is_nearest = |t: &f64| nearest.is_none_or(|nearest| *t < nearest.t);
     if let Some(distance) = ground(context, surface_ray).filter(is_nearest) {
@@ -89,19 +92,21 @@ pub(super) fn nearest(context: &LightingContext<'_>, surface_ray: &SurfaceRay) -
             is_outside: true,
         });
     }
-    let NearestHit { id, sphere, .. } = nearest?;
-    let SphereHit { distance, outward, is_outside } = hit_of(ray, start, own, sphere)?;
-    let (center, radius) = context.sphere(id);
+    let NearestHit { id, shape, .. } = nearest?;
+    let ShapeHit { distance, outward, is_outside } = hit_of(ray, start, own, shape)?;
     Some(Interaction {
-        surface: Surface::Sphere(id),
+        surface: Surface::Shape(id),
         distance,
-        point: center + radius * outward,
+        point: match shape {
+            Shape::Sphere([x, y, z, radius]) => wide([x, y, z]) + f64::from(radius) * outward,
+            Shape::Cone(_) => ray.at(distance),
+        },
         normal: if is_outside { outward } else { -outward },
         is_outside,
     })
 }
 
-/// Whether any surface is nearer than `t_max`, except the sphere `exempt` and spheres equal to it.
+/// Whether any surface is nearer than `t_max`, except the shape `exempt` and shapes equal to it.
 pub(super) fn is_occluded(
     context: &LightingContext<'_>,
     surface_ray: &SurfaceRay,
@@ -110,69 +115,76 @@ pub(super) fn is_occluded(
     exempt: Option<u32>,
 ) -> bool {
     let ray = &surface_ray.ray;
-    let (start, own) = (surface_ray.start, start_sphere(context, surface_ray.start));
+    let (start, own) = (surface_ray.start, start_shape(context, surface_ray.start));
     let hides = |id: u32| match occluders {
         Occluders::All => true,
         Occluders::Opaque => context.scene.surface(id).opacity >= 1.0,
     };
-    // If several spheres equal the one on which the ray starts, only that one counts.
-    let is_there = |id: u32, sphere| match start {
-        Start::Inside(first) => id == first || !own.is_some_and(|own| is_same(own, sphere)),
+    // If several shapes equal the one on which the ray starts, only that one counts.
+    let is_there = |id: u32, shape| match start {
+        Start::Inside(first) => id == first || own != Some(shape),
         Start::Free | Start::Outside(_) | Start::Ground => true,
     };
-    let exempt = exempt.map(|id| context.scene.spheres()[id as usize]);
+    let exempt = exempt.map(|id| context.scene.shared_shapes().shape(id));
     ground(context, surface_ray).is_some_and(|t| t < t_max)
-        || context.search.any(ray, t_max, |id, sphere| {
-            hit_of(ray, start, own, sphere).is_some_and(|hit| hit.distance < t_max)
-                && !exempt.is_some_and(|own| is_same(own, sphere))
-                && is_there(id, sphere)
+        || context.search.any(ray, t_max, |id, shape| {
+            hit_of(ray, start, own, shape).is_some_and(|hit| hit.distance < t_max)
+                && exempt != Some(shape)
+                && is_there(id, shape)
                 && hides(id)
         })
 }
 
-/// Whether two spheres have the same centre and radius.
-fn is_same(one: [f32; 4], other: [f32; 4]) -> bool {
-    Vec4::from(one) == Vec4::from(other)
-}
-
-/// The sphere on which a ray starts.
-fn start_sphere(context: &LightingContext<'_>, start: Start) -> Option<[f32; 4]> {
+/// The shape on which a ray starts.
+fn start_shape(context: &LightingContext<'_>, start: Start) -> Option<Shape> {
     match start {
         Start::Free | Start::Ground => None,
-        Start::Outside(id) | Start::Inside(id) => Some(context.scene.spheres()[id as usize]),
+        Start::Outside(id) | Start::Inside(id) => Some(context.scene.shared_shapes().shape(id)),
     }
 }
 
-/// The intersection of a ray and a sphere.
+/// The intersection of a ray and a shape.
 #[derive(Clone, Copy)]
-struct SphereHit {
+struct ShapeHit {
     distance: f64,
-    /// Unit normal, pointing away from the centre.
+    /// Unit normal, pointing out of the shape.
     outward: DVec3,
     /// Whether the ray arrives from outside. The normal cannot tell: for grazing rays, rounding may change its side, so
     /// that light would leak through.
     is_outside: bool,
 }
 
-/// The hit of a ray that starts on the sphere `own`. Inlined, so that callers that need only the distance do not compute
+/// The hit of a ray that starts on the shape `own`. Inlined, so that callers that need only the distance do not compute
 /// the rest.
 #[inline(always)]
-fn hit_of(ray: &Ray, start: Start, own: Option<[f32; 4]>, sphere: [f32; 4]) -> Option<SphereHit> {
-    let [x, y, z, radius] = sphere.map(f64::from);
+fn hit_of(ray: &Ray, start: Start, own: Option<Shape>, shape: Shape) -> Option<ShapeHit> {
+    let is_own = own == Some(shape);
+    let [x, y, z, radius] = match shape {
+        Shape::Sphere(sphere) => sphere.map(f64::from),
+        Shape::Cone(cone) => {
+            let hits = crossings(ray, &cone)?.into_iter().zip([true, false]);
+            let mut hits = hits.filter(|(hit, _)| hit.normal.is_some());
+            let (hit, is_outside) = match start {
+                Start::Outside(_) if is_own => None,
+                Start::Inside(_) if is_own => hits.find(|(_, is_outside)| !is_outside),
+                _ => hits.find(|(hit, _)| hit.t > 0.0),
+            }?;
+            return Some(ShapeHit { distance: hit.t.max(0.0), outward: hit.normal?, is_outside });
+        }
+    };
     let center = DVec3::new(x, y, z);
     let from_center = ray.origin - center;
-    let is_own = own.is_some_and(|own| is_same(own, sphere));
     match start {
         Start::Outside(_) if is_own => None,
         Start::Inside(_) if is_own => {
             let distance = (-2.0 * from_center.dot(ray.direction)).max(0.0);
             let outward = (from_center + distance * ray.direction).normalize_or(DVec3::Z);
-            Some(SphereHit { distance, outward, is_outside: false })
+            Some(ShapeHit { distance, outward, is_outside: false })
         }
         _ => {
             let (distance, outward) = intersect(ray, center, radius)?;
             let is_outside = from_center.length_squared() - radius * radius > 0.0;
-            Some(SphereHit { distance, outward: outward.normalize_or(DVec3::Z), is_outside })
+            Some(ShapeHit { distance, outward: outward.normalize_or(DVec3::Z), is_outside })
         }
     }
 }
@@ -263,10 +275,10 @@ mod tests {
         with_spheres(&[Sphere::new([0.0; 3], 1.0, LinearRgb::WHITE); 3], |context| {
             let ray = Ray { origin: DVec3::new(0.0, 0.0, 3.0), direction: -DVec3::Z };
             let hit = nearest(context, &SurfaceRay { ray, start: Start::Free }).unwrap();
-            assert_eq!((hit.surface, hit.distance), (Surface::Sphere(0), 2.0));
+            assert_eq!((hit.surface, hit.distance), (Surface::Shape(0), 2.0));
             let ray = Ray { origin: hit.point, ..ray };
             let hit = nearest(context, &SurfaceRay { ray, start: hit.other_side() }).unwrap();
-            assert_eq!((hit.surface, hit.distance), (Surface::Sphere(0), 2.0));
+            assert_eq!((hit.surface, hit.distance), (Surface::Shape(0), 2.0));
         });
     }
 
@@ -288,7 +300,7 @@ mod tests {
                     assert!(nearest(context, &surface_ray).is_none() && !hides(None));
                 } else {
                     let hit = nearest(context, &surface_ray).unwrap();
-                    assert_eq!((hit.surface, hit.is_outside), (Surface::Sphere(0), false));
+                    assert_eq!((hit.surface, hit.is_outside), (Surface::Shape(0), false));
                     assert!(hides(None) && !hides(Some(2)));
                 }
             }

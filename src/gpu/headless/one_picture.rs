@@ -64,8 +64,8 @@ impl Headless {
             let image = self.render_by_brick(request, plan, upload_watch, watch, None);
             return Ok(Picture::by_primary_rays(image.await?));
         }
-        let options_of = |kind: BrickKind, several_bricks: bool| {
-            let options = self.options_of(&[kind], several_bricks, view.camera);
+        let options_of = |kinds: &[BrickKind], several_bricks: bool| {
+            let options = self.options_of(kinds, several_bricks, view.camera);
             RendererOptions { data_layers: ReadBack::new(layers, is_shaded).has_data(), ..options }
         };
         let options_of: Option<&OptionsOf<'_>> =
@@ -85,6 +85,7 @@ impl Headless {
         let size = [view.film.width(), view.film.height()];
         settings.integrator.is_primary()
             && plan.accel.brick_count > 1
+            && plan.accel.cones.is_none()
             && plan.accel.structure != Structure::List
             && plan.tile_size == size
     }
@@ -114,7 +115,7 @@ impl Headless {
         let no_bricks = UploadedBricks { space: brick_space, bricks: Vec::new(), bytes: 0 };
         let kinds = [false, true].map(|nested| brick_space.structure.with_nested(nested));
         self.alone(async |renderers: &mut Renderers| {
-            let layouts = self.layouts_of(kinds.to_vec()).await?;
+            let layouts = self.layouts_of(kinds.to_vec(), None).await?;
             let mut upload = SceneUpload::new(&layouts, device, queue, &summary, brick_space, &ids).await?;
             let mut scene = SceneBuffers::new_of(no_bricks, summary, ids.exclude_by, self.shape());
             let primary = scene.primary_settings(settings)?;

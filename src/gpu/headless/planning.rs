@@ -74,7 +74,7 @@ impl Headless {
         }
         match scene.whole() {
             Some(whole) => plan.within((whole.min, whole.max)),
-            None => plan,
+            None => plan.with_cones(scene.cones(), binding),
         }
     }
 

@@ -32,30 +32,22 @@ pub(crate) struct Output<'a> {
 impl Headless {
     /// The options of a renderer for pictures of a scene without data layers.
     pub(crate) fn options_for(&self, scene: &SceneBuffers, camera: &dyn Camera) -> RendererOptions {
-        self.options_of(&scene.kinds(), scene.bricks.len() > 1, camera)
+        self.options_of(&scene.kinds(), scene.has_several_bricks(), camera)
     }
 
     /// The options of a renderer for pictures without data layers, of one brick or of several bricks.
     /// `kinds` are the kinds of the bricks.
     pub(crate) fn options_of(&self, kinds: &[BrickKind], several_bricks: bool, camera: &dyn Camera) -> RendererOptions {
-        let mut structures: Vec<_> = kinds.iter().map(|kind| kind.structure).collect();
-        let mut primitives: Vec<_> = kinds.iter().map(|kind| kind.primitive).collect();
-        // Lists are sorted, so that equal options have equal lists.
-        structures.sort_by_key(|structure| structure.name());
-        structures.dedup();
-        primitives.sort_by_key(|primitive| primitive.name());
-        primitives.dedup();
         RendererOptions {
             color: ColorTarget::Linear32,
             cameras: vec![camera.kind()],
-            structures,
-            primitives,
             several_bricks,
             device_type: Some(self.info.device_type),
             edits: self.edits.replacements.clone(),
             rewrite: self.edits.rewrite.clone(),
             ..RendererOptions::default()
         }
+        .with_kinds(kinds)
     }
 
     /// Renders a picture with a ray through the centre of every pixel. Without `primary`, colours and normals are not

@@ -75,7 +75,7 @@ pub(crate) fn of_picture(scene: &Scene, view: &View<'_>, plan: &AccelPlan) -> Op
     let size = [view.film.width(), view.film.height()];
     // Tiles are numbered in 16 bits along each axis.
     let are_few = size.iter().all(|side| side.div_ceil(SIDE) <= u32::from(u16::MAX));
-    if !kinds.contains(&view.camera.kind()) || scene.is_empty() || !are_few {
+    if !kinds.contains(&view.camera.kind()) || scene.is_empty() || !scene.cones().is_empty() || !are_few {
         return None;
     }
     let tile = Tile { origin: [0, 0], size, in_target: [0, 0] };

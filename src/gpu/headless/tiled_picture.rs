@@ -45,7 +45,7 @@ impl Headless {
         let ids = ShapeIds::of_all(scene, false);
         let mut image = Image::new(film.width(), film.height(), *layers)?;
         self.alone(async |renderers: &mut Renderers| {
-            let layouts = self.layouts_of(vec![kind.structure]).await?;
+            let layouts = self.layouts_of(vec![kind.structure], None).await?;
             let has_slabs = scene.len() > ONE_SLAB;
             self.begin_renderer(renderers, options_of(has_slabs));
             let summary = SceneSummary::of(scene);

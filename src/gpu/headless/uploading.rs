@@ -14,13 +14,14 @@ use crate::gpu::profile::NotedPass;
 use crate::gpu::resources::Make;
 use crate::gpu::scene::recolor::Recolor;
 use crate::gpu::scene::scene_buffers::SceneBuffers;
+use crate::gpu::scene::scene_buffers::has_several;
 use crate::gpu::scene::scene_summary::{SceneSummary, ShapeIds};
 use crate::gpu::scene::scene_upload::{BrickSource, SceneUpload};
 use crate::gpu::scene::structures::Structures;
 use crate::scene::{Scene, SceneUpdate};
 
 /// Returns the options of the renderer that a picture needs for bricks of a kind, and for several bricks if `true`.
-pub(crate) type OptionsOf<'a> = dyn Fn(BrickKind, bool) -> RendererOptions + 'a;
+pub(crate) type OptionsOf<'a> = dyn Fn(&[BrickKind], bool) -> RendererOptions + 'a;
 
 /// Callback with the structure of bricks that have been built, and whether there are several.
 type WhenBuilt<'a> = dyn FnMut(Structure, bool) + 'a;
@@ -44,7 +45,8 @@ impl Headless {
         let kinds = [accel].into_iter().chain(occluders).map(Accel::structure).collect();
         let watch: &mut UploadWatch<'_> = &mut go_on;
         self.alone(async |_: &mut Renderers| {
-            let renderer = self.layouts_of(kinds).await?;
+            let of_cones = structures.accel.bricks().iter().find(|brick| brick.primitive() == Primitive::Cone);
+            let renderer = self.layouts_of(kinds, of_cones.map(Brick::structure_of_cones)).await?;
             let all = self.upload_bricks(&renderer, scene, false, accel.into(), watch, &mut |_, _| {}).await?;
             let Some(accel) = occluders else {
                 return Ok(all);
@@ -82,17 +84,17 @@ impl Headless {
     ) -> Result<SceneBuffers, GpuError> {
         let StructurePlans { accel, occluders } = plans;
         let planned = [accel].into_iter().chain(occluders).map(|plan| plan.structure);
-        let kinds = planned.flat_map(|structure| [structure, structure.with_nested(true)]);
-        let kinds: Vec<Structure> = kinds.collect();
+        let structures = planned.flat_map(|structure| [structure, structure.with_nested(true)]);
+        let (structures, of_cones) = (structures.collect::<Vec<_>>(), accel.cones.map(|cones| cones.structure));
         self.alone(async |renderers: &mut Renderers| {
-            let renderer = self.layouts_of(kinds).await?;
+            let renderer = self.layouts_of(structures, of_cones).await?;
             let phase = self.phase("divide");
-            let bricks = accel.bricks(scene.spheres()).into();
+            let bricks = accel.bricks(scene.spheres()).with_cones(scene.cones()).into();
             drop(phase);
             let mut begin = |structure: Structure, several_bricks: bool| {
                 if let Some(options_of) = options_of {
-                    let kind = BrickKind { structure, primitive: Primitive::Sphere };
-                    self.begin_renderer(renderers, options_of(kind, several_bricks));
+                    let kinds = accel.kinds(structure);
+                    self.begin_renderer(renderers, options_of(&kinds, several_bricks));
                 }
             };
             let all = self.upload_bricks(&renderer, scene, false, bricks, watch, &mut begin).await?;
@@ -146,10 +148,15 @@ impl Headless {
     }
 
     /// A renderer that only provides the bind group layouts of structures. Equal layouts of one device are compatible.
-    pub(crate) async fn layouts_of(&self, structures: Vec<Structure>) -> Result<Renderer, GpuError> {
-        let cameras = Vec::new();
+    pub(crate) async fn layouts_of(
+        &self,
+        structures: Vec<Structure>,
+        of_cones: Option<Structure>,
+    ) -> Result<Renderer, GpuError> {
+        let (cameras, cone_structures) = (Vec::new(), of_cones.into_iter().collect());
         let device_type = Some(self.info.device_type);
-        let options = RendererOptions { cameras, structures, device_type, ..RendererOptions::default() };
+        let options =
+            RendererOptions { cameras, structures, cone_structures, device_type, ..RendererOptions::default() };
         Renderer::new(self.device(), &options).await
     }
 
@@ -183,6 +190,7 @@ impl Headless {
         let (device, queue, total) = (self.device(), self.queue(), bricks.len());
         let mut upload = SceneUpload::new(renderer, device, queue, &summary, space, &ids).await?;
         let mut structure = space.structure;
+        let mut primitives = Vec::new();
         for number in 0..total {
             let mut tell = |step| UploadProgress { step, brick: number, bricks: total }.tell(watch);
             tell(UploadStep::Building)?;
@@ -190,8 +198,9 @@ impl Headless {
             let Some(brick) = bricks.next() else { break };
             drop(phase);
             structure = structure.with_nested(brick.borrow().is_nested());
+            primitives.push(brick.borrow().primitive());
             if number + 1 == total {
-                built(structure, total > 1);
+                built(structure, has_several(&primitives));
             }
             tell(UploadStep::Copying)?;
             let _phase = self.phase("upload");

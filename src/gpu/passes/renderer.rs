@@ -84,13 +84,13 @@ impl Renderer {
         let layouts = checks.create(device, || Layouts::new(device, options));
         let mut remaining = VecDeque::new();
         for &camera in &options.cameras {
-            for (kind, _) in &layouts.brick {
-                remaining.push_back(PassKey::Trace(camera, *kind, BrickPass::First));
-            }
-            let shade = options.primitives.iter().map(|of| PassKey::Shade(camera, *of));
-            remaining.extend(shade);
-            let later = layouts.brick.iter().filter(|_| options.several_bricks);
-            remaining.extend(later.map(|(of, _)| PassKey::Trace(camera, *of, BrickPass::Later)));
+            // Bricks of spheres are traced before those of cones.
+            let is_first = |kind: &BrickKind| options.primitives().next() == Some(kind.primitive);
+            let first = options.kinds().filter(is_first).map(|of| PassKey::Trace(camera, of, BrickPass::First));
+            remaining.extend(first);
+            remaining.extend(options.primitives().map(|of| PassKey::Shade(camera, of)));
+            let later = options.kinds().filter(|of| options.several_bricks || !is_first(of));
+            remaining.extend(later.map(|of| PassKey::Trace(camera, of, BrickPass::Later)));
         }
         Self {
             layouts,
@@ -227,7 +227,7 @@ mod tests {
                     color,
                     data_layers,
                     structures: Structure::ALL.to_vec(),
-                    primitives: Primitive::ALL.to_vec(),
+                    cone_structures: vec![Structure::List, Structure::WideTree],
                     keeps_rays,
                     ..RendererOptions::default()
                 };

@@ -2,7 +2,7 @@
 
 use glam::{DVec2, DVec3, Vec3};
 
-use crate::accel::{BrickBounds, margin_of};
+use crate::accel::{BrickBounds, Primitive, margin_of};
 use crate::camera::film::YAxis;
 use crate::camera::{Camera, CameraKind, CameraVectors, View};
 use crate::gpu::passes::tiles::{Groups, Tile, WORKGROUP_SIDE, tiles};
@@ -16,8 +16,10 @@ pub(crate) struct VisibleBricks {
     scene: VisibleRegion,
     /// The bricks that may be visible, the nearest first.
     bricks: Vec<(usize, VisibleRegion)>,
-    /// The brick that is traced where no brick may be visible.
+    /// The brick that is traced where no brick may be visible, or only bricks of cones though there are spheres.
     nearest: usize,
+    /// The bricks of cones.
+    of_cones: Vec<usize>,
 }
 
 impl VisibleBricks {
@@ -32,7 +34,9 @@ impl VisibleBricks {
             let region = VisibleRegion::of_brick(view, &space_of(space, &bricks[brick])?)?;
             Some((brick, region.within(scene)))
         };
-        Self { scene, bricks: order.into_iter().filter_map(region).collect(), nearest }
+        let is_of_cones = |brick: &usize| bricks[*brick].primitive == Primitive::Cone;
+        let of_cones = (0..bricks.len()).filter(is_of_cones).collect();
+        Self { scene, bricks: order.into_iter().filter_map(region).collect(), nearest, of_cones }
     }
 
     /// Number of pixels of a tile in which the scene may be visible, in whole workgroups.
@@ -47,8 +51,10 @@ impl VisibleBricks {
         let mut parts: Vec<_> = regions.filter(|(_, groups)| groups.count() > 0).collect();
         let scene = self.scene.groups_of(tile);
         match parts.first_mut() {
-            Some((_, groups)) => *groups = scene,
-            None => parts.push((self.nearest, scene)),
+            Some((brick, groups)) if !self.of_cones.contains(brick) || self.of_cones.contains(&self.nearest) => {
+                *groups = scene;
+            }
+            _ => parts.insert(0, (self.nearest, scene)),
         }
         parts
     }
@@ -75,7 +81,8 @@ fn distance_squared(brick: &BrickBounds, point: Vec3) -> f32 {
     (point - point.max(brick.center_min).min(brick.center_max)).length_squared()
 }
 
-/// The indices of boxes, sorted by their distance from the camera, the nearest first. Hits in near bricks then let rays
+/// The indices of boxes, sorted by their distance from the camera, the nearest first, those of spheres before those of
+/// cones. Hits in near bricks then let rays
 /// skip the others. The picture does not depend on the order.
 pub(crate) fn nearest_first(
     boxes: impl Iterator<Item = BrickBounds>,
@@ -83,9 +90,11 @@ pub(crate) fn nearest_first(
     space: &SceneSpace,
 ) -> Vec<usize> {
     let eye = (camera.ray_in_world(DVec2::ZERO).origin - space.origin).as_vec3();
-    let mut order: Vec<(f32, usize)> = boxes.map(|brick| distance_squared(&brick, eye)).zip(0..).collect();
-    order.sort_by(|a, b| a.0.total_cmp(&b.0));
-    order.into_iter().map(|(_, brick)| brick).collect()
+    let is_later = |brick: &BrickBounds| brick.primitive == Primitive::Cone;
+    let mut order: Vec<(bool, f32, usize)> =
+        boxes.zip(0..).map(|(brick, at)| (is_later(&brick), distance_squared(&brick, eye), at)).collect();
+    order.sort_by(|a, b| a.0.cmp(&b.0).then(a.1.total_cmp(&b.1)));
+    order.into_iter().map(|(.., brick)| brick).collect()
 }
 
 /// A rectangle of the film in pixels, which may be empty. No ray of a pixel outside of it hits the scene's box.

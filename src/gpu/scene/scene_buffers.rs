@@ -7,7 +7,7 @@ use std::time::Duration;
 
 use wgpu::{Device, Queue};
 
-use crate::accel::{Accel, AccelChoice, AccelPlan, Brick, BrickBounds, BrickKind, LIST_LEN, Structure};
+use crate::accel::{Accel, AccelChoice, AccelPlan, Brick, BrickBounds, BrickKind, LIST_LEN, Primitive, Structure};
 use crate::camera::View;
 use crate::gpu::device_shape::{DeviceShape, SubmissionSize};
 use crate::gpu::error::GpuError;
@@ -84,7 +84,7 @@ impl SceneBuffers {
     /// As for [`SceneBuffers::with_accel`].
     pub async fn new(renderer: &Renderer, device: &Device, queue: &Queue, scene: &Scene) -> Result<Self, GpuError> {
         let plan = plan_of(device, scene);
-        let bricks = BrickSource::from(plan.bricks(scene.spheres()));
+        let bricks = BrickSource::from(plan.bricks(scene.spheres()).with_cones(scene.cones()));
         let ids = ShapeIds::of_all(scene, bricks.may_split_duplicates);
         Self::upload(renderer, device, queue, SceneSummary::of(scene), bricks, &ids).await
     }
@@ -156,11 +156,8 @@ impl SceneBuffers {
         shape: DeviceShape,
     ) -> Self {
         let UploadedBricks { space: BrickSpace { structure, bounds: (min, max) }, bricks, bytes } = uploaded;
-        let tests_per_ray = match structure {
-            Structure::List => bricks.iter().map(|brick| brick.shape_count as usize).max(),
-            _ => None,
-        };
-        let tests_per_ray = tests_per_ray.unwrap_or(0);
+        let lists = bricks.iter().filter(|brick| brick.kind.structure == Structure::List);
+        let tests_per_ray = lists.map(|brick| brick.shape_count as usize).max().unwrap_or(0);
         Self {
             id: SceneId::new(),
             colors: 0,
@@ -208,16 +205,26 @@ impl SceneBuffers {
 
     /// The buffers of the spheres that can hide lights from surfaces. In a studio these are only the opaque spheres.
     pub(crate) fn occluders(&self, settings: &RenderSettings) -> Result<&Self, GpuError> {
-        if settings.studio_parameters().is_none() { Ok(self) } else { self.studio_occluders() }
+        match settings.studio_parameters() {
+            Some(_) => self.studio_occluders(),
+            None if self.has_cones() => Err(GpuError::LitCones),
+            None => Ok(self),
+        }
     }
 
     /// The buffers of the spheres that can hide lights from surfaces in a studio.
     pub(crate) fn studio_occluders(&self) -> Result<&Self, GpuError> {
         match &self.occluders {
+            _ if self.has_cones() => Err(GpuError::LitCones),
             _ if self.summary.is_opaque() => Ok(self),
             Some(occluders) => Ok(occluders),
             None => Err(GpuError::NoOccluders),
         }
+    }
+
+    /// Whether there are cones or cylinders, which devices do not light yet.
+    pub(crate) fn has_cones(&self) -> bool {
+        !self.summary.shapes.cones.is_empty()
     }
 
     /// The settings for shading primary rays.
@@ -271,10 +278,20 @@ impl SceneBuffers {
         kinds
     }
 
+    /// Whether pipelines are needed that continue from the hits of other bricks of the same kind.
+    pub(crate) fn has_several_bricks(&self) -> bool {
+        has_several(&self.bricks.iter().map(|brick| brick.kind.primitive).collect::<Vec<_>>())
+    }
+
     /// The boxes of the bricks, in the same order.
     pub(crate) fn brick_bounds(&self) -> Vec<BrickBounds> {
         self.bricks.iter().map(|brick| brick.bounds).collect()
     }
+}
+
+/// Whether there are several bricks of the kind of shapes that is traced first, which is that of the first brick.
+pub(crate) fn has_several(primitives: &[Primitive]) -> bool {
+    primitives.iter().filter(|of| Some(of) == primitives.first().as_ref()).count() > 1
 }
 
 /// Maximum size of a storage binding in bytes on a device with these limits.
@@ -292,5 +309,6 @@ pub(crate) fn search_limit(device: &Device) -> u64 {
 
 /// Plans the structure of a scene for a device.
 fn plan_of(device: &Device, scene: &Scene) -> AccelPlan {
-    AccelPlan::new(scene.spheres(), AccelChoice::Auto, search_limit(device))
+    let binding = search_limit(device);
+    AccelPlan::new(scene.spheres(), AccelChoice::Auto, binding).with_cones(scene.cones(), binding)
 }

@@ -1,5 +1,6 @@
 //! Copying the bricks of a scene to a device, one after the other, and their buffers.
 
+use std::borrow::Cow;
 use std::sync::Arc;
 
 use glam::Vec3;
@@ -154,9 +155,16 @@ impl<'a> SceneUpload<'a> {
     pub(crate) async fn brick(&mut self, brick: &Brick) -> Result<(), GpuError> {
         let (renderer, device, queue) = (self.renderer, self.device, self.queue);
         let Self { palette, uploaded, .. } = self;
-        let ids = self.ids.of(&brick.ids);
-        let structure = uploaded.space.structure.with_nested(brick.is_nested());
-        let kind = BrickKind { structure, primitive: Primitive::Sphere };
+        let ids = match brick.primitive() {
+            Primitive::Sphere => self.ids.of(&brick.ids),
+            Primitive::Cone => Cow::Borrowed(&brick.ids[..]),
+        };
+        let primitive = brick.primitive();
+        let structure = match primitive {
+            Primitive::Sphere => uploaded.space.structure.with_nested(brick.is_nested()),
+            Primitive::Cone => brick.structure_of_cones(),
+        };
+        let kind = BrickKind { structure, primitive };
         let layouts = &renderer.layouts;
         let trace_layout = layouts.brick_like(kind)?;
         let appearances = AppearanceWords::of(&self.appearance, &ids);
@@ -173,7 +181,10 @@ impl<'a> SceneUpload<'a> {
         };
         // A buffer binding must not be empty.
         let (no_shape, no_word) = ([0; LARGEST_SHAPE], [0]);
-        let shapes = bytemuck::cast_slice(&brick.spheres);
+        let shapes = match primitive {
+            Primitive::Sphere => bytemuck::cast_slice(&brick.spheres),
+            Primitive::Cone => bytemuck::cast_slice(&brick.cones),
+        };
         let shapes = if shapes.is_empty() { &no_shape[..] } else { shapes };
         let ids = if ids.is_empty() { &no_word[..] } else { &ids };
         // Data that share a buffer with the ids, so that a kernel has enough bindings.
@@ -214,7 +225,7 @@ impl<'a> SceneUpload<'a> {
         let all_ids = with_ids.iter().map(|of| of.len()).sum();
         self.first_shape += record.shape_count;
         for (what, bytes) in [
-            ("the buffer of spheres", shapes.len()),
+            ("the buffer of shapes", shapes.len()),
             ("the buffer of ids", all_ids),
             ("the buffer of colors", appearances.len()),
         ]
@@ -223,6 +234,7 @@ impl<'a> SceneUpload<'a> {
         {
             check_storage_size(device, what, bytes as u64)?;
         }
+        let surface_layout = layouts.surface_of(kind.primitive);
         let buffers = scoped(device, || {
             let mut filled =
                 |label, usage, slices: &[&[u8]]| joined((device, queue), &mut uploaded.bytes, label, usage, slices);
@@ -260,14 +272,14 @@ impl<'a> SceneUpload<'a> {
                 numbered_group(device, label, layout, buffers.iter().map(|buffer| buffer.as_entire_binding()))
             };
             let shaded = [&record, &shapes, &appearances, palette];
-            let surface_layout = layouts.surface_of(kind.primitive);
+
             let seen = [&appearances, palette];
             BrickBuffers {
                 kind,
                 bounds: match tiles {
                     // All spheres of a picture are seen in it.
                     Some(_) => BrickBounds::of_box(uploaded.space.bounds),
-                    None => BrickBounds::of_spheres(&brick.spheres),
+                    None => BrickBounds::of_brick(brick),
                 },
                 trace_group: numbered_group(device, "pinhole brick", trace_layout, traced),
                 surface_group: group("pinhole surface", surface_layout, &shaded),
@@ -298,7 +310,7 @@ impl<'a> SceneUpload<'a> {
         let UploadedBricks { mut space, mut bricks, bytes } = self.uploaded;
         let is_nested = |brick: &BrickBuffers| matches!(brick.kind.structure, Structure::NestedGrid);
         space.structure = space.structure.with_nested(bricks.iter().any(is_nested));
-        for brick in &mut bricks {
+        for brick in bricks.iter_mut().filter(|brick| brick.kind.primitive == Primitive::Sphere) {
             brick.kind.structure = space.structure;
             self.renderer.layouts.brick_of(brick.kind)?;
         }

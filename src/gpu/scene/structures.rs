@@ -27,7 +27,7 @@ impl RenderPlan {
     /// Builds the planned structures of the scene that the plan was made for.
     #[must_use]
     pub fn build(&self, scene: &Scene) -> Structures {
-        let accel = self.accel.build(scene.spheres());
+        let accel = self.accel.bricks(scene.spheres()).with_cones(scene.cones()).build();
         let occluders = self.occluders.as_ref().zip(self.occluders.as_ref().and(scene.opaque()));
         let occluders = occluders.map(|(plan, opaque)| plan.build(opaque.spheres()));
         Structures { accel, occluders }

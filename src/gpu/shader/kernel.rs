@@ -25,9 +25,12 @@ const STRUCTURES: &[&str] =
 /// The file that begins with a directive, which WGSL allows only before all declarations.
 const WITH_DIRECTIVE: &str = "accel/ray_query.wgsl";
 
+/// The file of the shape that is not a sphere.
+const CONE: &str = "scene/cone.wgsl";
+
 /// Whether other kernels with the same entry point may have another part in place of this one.
 fn is_choice(part: &str) -> bool {
-    part.contains('#') || STRUCTURES.contains(&part)
+    part.contains('#') || STRUCTURES.contains(&part) || part == CONE
 }
 
 impl Kernel {

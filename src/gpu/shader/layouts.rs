@@ -5,6 +5,7 @@ use std::num::NonZeroU64;
 use wgpu::{BindGroupLayout, BindGroupLayoutEntry, BindingType, Device};
 
 use crate::accel::{BrickKind, Primitive, Structure};
+use crate::geometry::cone::ConeInFrame;
 use crate::gpu::error::GpuError;
 use crate::gpu::passes::renderer_options::RendererOptions;
 use crate::gpu::shader::formats::{DEPTH_FORMAT, ID_FORMAT, NORMAL_FORMAT};
@@ -20,6 +21,7 @@ pub(crate) struct Layouts {
     pub(crate) brick: Vec<(BrickKind, BindGroupLayout)>,
     /// Layout of bind group 1 of `shade`, for spheres.
     pub(crate) surface: BindGroupLayout,
+    surface_of_cones: BindGroupLayout,
     /// Layout of bind group 3 of kernels that search a brick and shade its shapes: their appearance.
     pub(crate) appearance: BindGroupLayout,
     /// Layout of bind group 2 of `shade`.
@@ -28,8 +30,12 @@ pub(crate) struct Layouts {
 
 impl Layouts {
     pub(crate) fn new(device: &Device, options: &RendererOptions) -> Self {
-        let RendererOptions { color, data_layers, keeps_rays, ref structures, ref primitives, .. } = *options;
+        let RendererOptions { color, data_layers, keeps_rays, .. } = *options;
         let layout = |label, kinds: &[BindingType]| layout(device, label, kinds);
+        let surface = |primitive| {
+            let (words, palette) = (storage::<u32>(true), storage::<records::Color>(true));
+            layout("pinhole surface", &[uniform::<records::Brick>(), shapes(primitive), words, palette])
+        };
         let mut targets = vec![target(color.texture_format())];
         if data_layers {
             targets.extend([DEPTH_FORMAT, NORMAL_FORMAT, ID_FORMAT].map(target));
@@ -44,23 +50,17 @@ impl Layouts {
         }
         Self {
             frame: layout("pinhole frame", &frame),
-            brick: BrickKind::of(structures, primitives)
+            brick: options
+                .kinds()
                 .map(|kind| {
-                    let (shapes, ids) = (storage::<records::Sphere>(true), searched(device, Searched::Ids));
-                    let mut kinds = vec![uniform::<records::Brick>(), shapes, ids];
+                    let ids = searched(device, Searched::Ids);
+                    let mut kinds = vec![uniform::<records::Brick>(), shapes(kind.primitive), ids];
                     kinds.extend(of_structure(device, kind.structure));
                     (kind, layout("pinhole brick", &kinds))
                 })
                 .collect(),
-            surface: layout(
-                "pinhole surface",
-                &[
-                    uniform::<records::Brick>(),
-                    storage::<records::Sphere>(true),
-                    storage::<u32>(true),
-                    storage::<records::Color>(true),
-                ],
-            ),
+            surface: surface(Primitive::Sphere),
+            surface_of_cones: surface(Primitive::Cone),
             appearance: layout("pinhole appearance", &[storage::<u32>(true), storage::<records::Color>(true)]),
             targets: layout("pinhole targets", &targets),
         }
@@ -86,7 +86,16 @@ impl Layouts {
     pub(crate) fn surface_of(&self, primitive: Primitive) -> &BindGroupLayout {
         match primitive {
             Primitive::Sphere => &self.surface,
+            Primitive::Cone => &self.surface_of_cones,
         }
+    }
+}
+
+/// Binding type of the shapes of a brick.
+fn shapes(primitive: Primitive) -> BindingType {
+    match primitive {
+        Primitive::Sphere => storage::<records::Sphere>(true),
+        Primitive::Cone => storage::<ConeInFrame>(true),
     }
 }
 

@@ -93,6 +93,7 @@ pub(crate) fn shade_kernel(
 fn primitive_part(primitive: Primitive) -> &'static str {
     match primitive {
         Primitive::Sphere => "scene/sphere.wgsl",
+        Primitive::Cone => "cone",
     }
 }
 

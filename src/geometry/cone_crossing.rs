@@ -5,15 +5,29 @@ use glam::DVec3;
 use crate::geometry::cone::ConeInFrame;
 use crate::geometry::ray::Ray;
 
-/// The distance to the cone's first point in front of the ray's origin, and the unit normal there, which points away from
-/// the axis, or from the other end. `None` for a miss.
+/// A crossing of the line of a ray and the surface of a cone.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Crossing {
+    /// The distance from the ray's origin, which is negative behind it.
+    pub(crate) t: f64,
+    /// The unit normal, which points away from the axis, or from the other end. `None` at an open end.
+    pub(crate) normal: Option<DVec3>,
+}
+
+/// The distance to the cone's first point in front of the ray's origin, and the unit normal there, which points out of the
+/// cone. `None` for a miss.
+#[must_use]
+pub fn intersect(ray: &Ray, cone: &ConeInFrame) -> Option<(f64, DVec3)> {
+    crossings(ray, cone)?.into_iter().filter(|crossing| crossing.t > 0.0).find_map(|hit| Some((hit.t, hit.normal?)))
+}
+
+/// Where the line of a ray enters the cone and leaves it.
 ///
 /// The side and the discs enclose a convex body, so a ray enters once and leaves once: after it has entered both the
 /// infinite cone, whose points have |p|² ≤ r², where p is the vector from the axis and r the radius there, and the slab
 /// between the planes of the discs, and before it leaves one of them. Crossings of open discs are no hits. Distances are
 /// computed from the point of the ray that is nearest to the middle of the axis, so that a distant origin costs no digits.
-#[must_use]
-pub fn intersect(ray: &Ray, cone: &ConeInFrame) -> Option<(f64, DVec3)> {
+pub(crate) fn crossings(ray: &Ray, cone: &ConeInFrame) -> Option<[Crossing; 2]> {
     let ([start, end], [first, second]) = (cone.ends(), cone.radii());
     let length = (end - start).length();
     let axis = (end - start) / length;
@@ -59,8 +73,7 @@ pub fn intersect(ray: &Ray, cone: &ConeInFrame) -> Option<(f64, DVec3)> {
     }
     let entry = if slab[0] > side[0] { below.2.then_some(below.1) } else { Some(outward(enters)) };
     let exit = if slab[1] < side[1] { above.2.then_some(above.1) } else { Some(outward(leaves)) };
-    let crossings = [(enters, entry), (leaves, exit)];
-    crossings.into_iter().filter(|(s, _)| foot + s > 0.0).find_map(|(s, normal)| Some((foot + s, normal?)))
+    Some([(enters, entry), (leaves, exit)].map(|(s, normal)| Crossing { t: foot + s, normal }))
 }
 
 #[cfg(test)]

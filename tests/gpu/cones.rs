@@ -1,0 +1,81 @@
+//! Pictures of cones and cylinders.
+
+use libtest_mimic::Trial;
+use pinhole::accel::AccelChoice;
+use pinhole::camera::{Camera, FisheyeCamera, OrthographicCamera, PinholeCamera, Pose};
+use pinhole::gpu::{Headless, PictureRequest, Wait};
+use pinhole::image::NO_ID;
+use pinhole::{Film, Image, LayerSet, RenderSettings, Scene, View, cpu};
+
+use crate::support::cones::mixed;
+use crate::trial;
+
+pub(crate) fn trials() -> Vec<Trial> {
+    vec![trial("cones::pictures_agree_with_the_reference", agree), trial("cones::lists_and_trees_agree", structures)]
+}
+
+fn cameras() -> Vec<Box<dyn Camera>> {
+    let pose = |eye| Pose::looking_at(eye, [0.0; 3], [0.0, 1.0, 0.0]).unwrap();
+    let pinhole = |eye| PinholeCamera::with_vertical_fov(pose(eye), 0.8, 1.0).unwrap();
+    vec![
+        Box::new(pinhole([1.0, 2.0, 3.0])),
+        Box::new(pinhole([0.1, 0.0, 0.2])),
+        Box::new(OrthographicCamera::new(pose([4.0, 1.0, 0.5]), [1.3, 1.3]).unwrap()),
+        Box::new(FisheyeCamera::new(pose([0.0, 0.3, 2.0]), 2.5, 1.0).unwrap()),
+    ]
+}
+
+fn picture(headless: &Headless, scene: &Scene, view: &View<'_>, choice: AccelChoice) -> Image {
+    let settings = RenderSettings::default();
+    let request = PictureRequest::new(scene, view, &settings, LayerSet::ALL);
+    let plan = headless.plan(&request, choice);
+    let buffers = headless.upload(scene, &plan.build(scene)).wait().unwrap();
+    headless
+        .render_uploaded(&buffers, view, &settings, LayerSet::ALL, &mut super::pictures::go_on)
+        .wait()
+        .unwrap()
+        .image
+}
+
+/// At almost all pixels, a device finds what the reference does.
+fn agree(headless: &'static Headless) {
+    let film = Film::new(160, 160).unwrap();
+    for (spheres, cones, size) in [(200, 400, 0.2), (0, 300, 0.3), (40, 5, 0.5), (0, 1, 1.0), (3000, 2000, 0.05)] {
+        let scene = mixed(spheres, cones, size, 7);
+        let structure = cpu::SearchStructure::new(&scene).unwrap();
+        let (mut hits, mut others) = (0, 0);
+        for camera in cameras() {
+            let view = View::new(camera.as_ref(), film);
+            let image = headless.render(&scene, &view, &RenderSettings::default(), LayerSet::ALL).wait().unwrap();
+            let (ids, depths, normals) = (image.id().unwrap(), image.depth().unwrap(), image.normal().unwrap());
+            for (at, id) in ids.iter().enumerate() {
+                let pixel = [at as u32 % film.width(), at as u32 / film.width()];
+                let hit = view.ray_through_center(pixel).and_then(|ray| cpu::trace(&structure, &ray));
+                if hit.map_or(NO_ID, |hit| hit.id) != *id {
+                    others += 1;
+                    continue;
+                }
+                let Some(hit) = hit else { continue };
+                hits += u32::from(hit.id as usize >= spheres);
+                let is_near = (f64::from(depths[at]) - hit.t).abs() < 1e-4 * hit.t
+                    && hit.normal.distance(normals[at].map(f64::from).into()) < 2e-3;
+                others += u32::from(!is_near);
+            }
+        }
+        println!("{spheres} spheres, {cones} cones: {hits} hits of cones, {others} others");
+        assert!(hits > 1000, "{spheres} spheres, {cones} cones: {hits}");
+        assert!(others * 500 < film.pixel_count() as u32 * 4, "{spheres} spheres, {cones} cones: {others}");
+    }
+}
+
+/// Pictures by different structures are the same, to the bit.
+fn structures(headless: &'static Headless) {
+    let scene = mixed(300, 600, 0.15, 8);
+    for camera in cameras() {
+        let view = View::new(camera.as_ref(), Film::new(96, 64).unwrap());
+        let [list, tree, grid] = [AccelChoice::List, AccelChoice::Tree, AccelChoice::Grid]
+            .map(|choice| picture(headless, &scene, &view, choice));
+        assert!(list.id().unwrap() == tree.id().unwrap() && list.id().unwrap() == grid.id().unwrap());
+        assert!(list.depth().unwrap() == tree.depth().unwrap() && list.depth().unwrap() == grid.depth().unwrap());
+    }
+}
