@@ -31,7 +31,7 @@ fn ensure(holds: bool, what: impl FnOnce() -> String) -> Result<(), String> {
 
 /// Checks a brick of a plan with the given margin.
 fn check(brick: &Brick, margin: f32) -> Result<(), String> {
-    let Brick { index, spheres, ids } = brick;
+    let Brick { index, spheres, ids, .. } = brick;
     ensure(spheres.len() == ids.len(), || "a sphere without an id".to_owned())?;
     match index {
         Index::Grid(grid) => GridCheck { grid, spheres, ids, margin: margin.into() }.all(),
@@ -248,7 +248,7 @@ fn built(spheres: &Spheres, structure: Structure) -> (Brick, f32) {
     if structure == Structure::Grid {
         let ids: Vec<u32> = (0..spheres.len() as u32).collect();
         let BuiltGrid { grid, spheres, ids } = build_grid(spheres, &ids, margin, budget(spheres));
-        return (Brick { index: Index::Grid(grid), spheres, ids }, margin);
+        return (Brick { index: Index::Grid(grid), spheres, cones: Vec::new(), ids }, margin);
     }
     let mut bricks: Vec<Brick> = plan.bricks(spheres).collect();
     assert_eq!(bricks.len(), 1);

@@ -114,14 +114,16 @@ pub(crate) fn bounds_in_frame(origin: DVec3, spheres: &[[f32; 4]]) -> Option<Bou
     parallel::map_chunks(spheres, of_chunk).into_iter().flatten().reduce(Bounds::union)
 }
 
-/// The bounding box, in world space, of shapes in a frame.
-pub(super) fn bounds_of_shapes(origin: DVec3, shapes: &SharedShapes) -> Option<Bounds> {
-    let of_cone = |cone: &ConeInFrame| {
-        let [low, high] = cone.corners();
-        Bounds::between(origin + low, origin + high)
-    };
-    let of_spheres = bounds_in_frame(origin, &shapes.spheres);
-    of_spheres.into_iter().chain(shapes.cones.iter().map(of_cone)).reduce(Bounds::union)
+impl SharedShapes {
+    /// The bounding box, in world space, of the shapes in a frame at `origin`.
+    pub(crate) fn bounds(&self, origin: DVec3) -> Option<Bounds> {
+        let of_cone = |cone: &ConeInFrame| {
+            let [low, high] = cone.corners();
+            Bounds::between(origin + low, origin + high)
+        };
+        let of_spheres = bounds_in_frame(origin, &self.spheres);
+        of_spheres.into_iter().chain(self.cones.iter().map(of_cone)).reduce(Bounds::union)
+    }
 }
 
 /// Bounds and frame of a scene whose parts are loaded separately. All parts share them. They determine the arithmetic

@@ -39,7 +39,6 @@ pub use color_map::{ColorMap, ColorMapError};
 pub(crate) use duplicates::Duplicates;
 pub use error::SceneError;
 pub use frame::SceneExtent;
-pub(crate) use frame::bounds_in_frame;
 pub(crate) use shared::{Shape, SharedShapes};
 pub use update::{Centers, NewColors, SceneUpdate, UpdateError};
 

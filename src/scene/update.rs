@@ -238,7 +238,7 @@ impl Scene {
         if update.changes_shape() {
             let moved: Vec<_> = range.clone().map(|index| update.sphere(self, index).1).collect();
             Arc::make_mut(&mut self.shapes).edit()[range.clone()].copy_from_slice(&moved);
-            self.bounds = frame::bounds_of_shapes(self.origin, &self.shapes);
+            self.bounds = self.shapes.bounds(self.origin);
         }
         if let Some(new) = &update.colors {
             Arc::make_mut(&mut self.appearance).set_colors(range, new);

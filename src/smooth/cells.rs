@@ -1,9 +1,14 @@
-//! The cells, and how many of their sample points are inside spheres.
+//! The cells, and how many of their sample points are inside shapes.
 
 use glam::{DVec3, IVec3};
 
+use super::levels::Places;
+use super::pieces::Axis;
+use crate::geometry::cone::ConeInFrame;
+use crate::geometry::cone_crossing::crossings;
+use crate::geometry::ray::Ray;
 use crate::parallel;
-use crate::scene::bounds_in_frame;
+use crate::scene::SharedShapes;
 
 /// The most cells. They take a byte each.
 const MOST: f64 = 32e6;
@@ -27,9 +32,9 @@ pub(super) struct Cells {
 }
 
 impl Cells {
-    pub(super) fn new(spheres: &[[f32; 4]]) -> Self {
-        let bounds = bounds_in_frame(DVec3::ZERO, spheres);
-        let wanted = if bounds.is_some() { wanted_side(spheres) } else { 1.0 };
+    pub(super) fn new(shapes: &SharedShapes) -> Self {
+        let bounds = shapes.bounds(DVec3::ZERO);
+        let wanted = if bounds.is_some() { wanted_side(shapes) } else { 1.0 };
         let [low, size] = bounds.map_or([DVec3::ZERO; 2], |bounds| [bounds.min(), bounds.size()]);
         let counts_of = |side: f64| (size / (2.0 * side)).ceil() * 2.0 + 2.0 * AROUND;
         let mut side = wanted;
@@ -46,16 +51,19 @@ impl Cells {
         (position - self.origin) / self.side
     }
 
-    /// The number of sample points, of eight, inside spheres, for each cell. Each thread fills some layers.
-    pub(super) fn fill(&self, spheres: &[[f32; 4]]) -> Vec<u8> {
+    /// The number of sample points, of eight, inside shapes, for each cell. Each thread fills some layers.
+    pub(super) fn fill(&self, places: &Places<'_>) -> Vec<u8> {
         let [x, y, z] = self.counts;
         let mut bits = vec![0; x * y * z];
         let layers = z.div_ceil(parallel::threads()).max(1);
         parallel::for_each(bits.chunks_mut(x * y * layers).enumerate().collect(), |(part, bits)| {
             let first = (part * layers) as i64;
             let samples = 2 * first..2 * (first + (bits.len() / (x * y)) as i64);
-            for sphere in spheres {
+            for sphere in &places.shapes.spheres {
                 self.fill_sphere(sphere, &samples, bits);
+            }
+            for (piece, ball) in places.pieces() {
+                self.fill_piece(&piece.cut(&places.shapes.cones[piece.cone as usize]), ball, &samples, bits);
             }
             bits.iter_mut().for_each(|bits: &mut u8| *bits = bits.count_ones() as u8);
         });
@@ -78,15 +86,49 @@ impl Cells {
                 if in_row < 0.0 {
                     continue;
                 }
-                let (x0, x1) = inside(center.x, in_row.sqrt()).into_inner();
-                let row = (((z - layers.start) / 2) as usize * self.counts[1] + (y / 2) as usize) * self.counts[0];
-                let shift = 2 * (y & 1) + 4 * (z & 1);
-                for cell in x0.div_euclid(2)..=x1.div_euclid(2) {
-                    let first = u8::from(x0 <= 2 * cell && 2 * cell <= x1);
-                    let second = u8::from(x0 <= 2 * cell + 1 && 2 * cell < x1);
-                    bits[row + cell as usize] |= (first | second << 1) << shift;
-                }
+                self.fill_row(inside(center.x, in_row.sqrt()), [y, z], layers, bits);
             }
+        }
+    }
+
+    /// Sets the bits of the sample points inside a piece of a cone, which is in a ball, in some layers.
+    fn fill_piece(&self, piece: &ConeInFrame, ball: &[f32; 4], layers: &std::ops::Range<i64>, bits: &mut [u8]) {
+        let [x, y, z, radius] = ball.map(f64::from);
+        let center = 2.0 * self.in_cells(DVec3::new(x, y, z)) - 0.5;
+        let radius = 2.0 * radius / self.side;
+        let inside = |center: f64, reach: f64| -floor(reach - center)..=floor(center + reach);
+        let (z0, z1) = inside(center.z, radius).into_inner();
+        for z in z0.max(layers.start)..=z1.min(layers.end - 1) {
+            for y in inside(center.y, radius) {
+                let sample = DVec3::new(0.0, y as f64, z as f64);
+                let origin = self.origin + 0.5 * self.side * (sample + 0.5);
+                let Some([enters, leaves]) = crossings(&Ray { origin, direction: DVec3::X }, piece) else { continue };
+                let [low, high] = [enters.t, leaves.t].map(|t| 2.0 * t / self.side);
+                // Rounding may make a row longer than its ball.
+                let (x0, x1) = inside(center.x, radius).into_inner();
+                self.fill_row((-floor(-low)).max(x0)..=floor(high).min(x1), [y, z], layers, bits);
+            }
+        }
+    }
+
+    /// Sets the bits of some sample points of a row.
+    fn fill_row(
+        &self,
+        samples: std::ops::RangeInclusive<i64>,
+        [y, z]: [i64; 2],
+        layers: &std::ops::Range<i64>,
+        bits: &mut [u8],
+    ) {
+        let (x0, x1) = samples.into_inner();
+        if x0 > x1 {
+            return;
+        }
+        let row = (((z - layers.start) / 2) as usize * self.counts[1] + (y / 2) as usize) * self.counts[0];
+        let shift = 2 * (y & 1) + 4 * (z & 1);
+        for cell in x0.div_euclid(2)..=x1.div_euclid(2) {
+            let first = u8::from(x0 <= 2 * cell && 2 * cell <= x1);
+            let second = u8::from(x0 <= 2 * cell + 1 && 2 * cell < x1);
+            bits[row + cell as usize] |= (first | second << 1) << shift;
         }
     }
 
@@ -162,11 +204,11 @@ pub(super) fn corners(first: IVec3, parts: DVec3) -> [(IVec3, f64); 4] {
 
 /// The side that cells should have: the mean radius, weighted by surface, but at most 1.5 times the radius below which
 /// lies a quarter of all surface, so that small spheres beside large ones still cover several sample points.
-fn wanted_side(spheres: &[[f32; 4]]) -> f64 {
+fn wanted_side(shapes: &SharedShapes) -> f64 {
     /// Radii whose leading bits are the same are together. The order of positive numbers is that of their bits.
     const SHIFT: u32 = 18;
     const COUNT: usize = 1 << (32 - SHIFT);
-    let parts = parallel::map_chunks(spheres, |_, spheres| {
+    let parts = parallel::map_chunks(&shapes.spheres, |_, spheres| {
         let mut sums = vec![[0.0; 2]; COUNT];
         for [.., radius] in spheres {
             let (sum, radius) = (&mut sums[(radius.to_bits() >> SHIFT) as usize], f64::from(*radius));
@@ -177,6 +219,14 @@ fn wanted_side(spheres: &[[f32; 4]]) -> f64 {
     let mut sums = vec![[0.0; 2]; COUNT];
     for part in parts {
         sums.iter_mut().zip(part).for_each(|(sum, part)| *sum = [sum[0] + part[0], sum[1] + part[1]]);
+    }
+    // Of a cone, the side counts, divided by 4π as for spheres.
+    for cone in &shapes.cones {
+        let (axis, [first, second]) = (Axis::of(cone), cone.radii());
+        let radius = 0.5 * (first + second);
+        let surface = 0.5 * radius * axis.length;
+        let sum = &mut sums[((radius as f32).to_bits() >> SHIFT) as usize];
+        *sum = [sum[0] + surface, sum[1] + surface * radius];
     }
     let [surface, volume] = [0, 1].map(|k| sums.iter().map(|sum| sum[k]).sum::<f64>());
     let mut below = 0.0;

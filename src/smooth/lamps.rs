@@ -12,8 +12,9 @@ use glam::{DVec3, Vec3};
 use super::caps::Cap;
 #[cfg(feature = "gpu")]
 use super::cells::Cells;
-use super::levels::{Cone, Places};
+use super::levels::{Beam, Places};
 use super::lists::{CubeLists, Needed};
+use super::pieces::{Axis, Piece};
 use super::spots::{Spot, sphere};
 
 /// The number of directions of a lamp with a width.
@@ -88,9 +89,9 @@ impl Lamp {
         let cells = places.cells;
         let (axis, slope) = (self.toward, self.slope);
         self.lists.complete(cubes, |cube| {
-            let cone = Cone { start: cells.middle(cube), axis, radius: 1.74 * cells.side, slope };
+            let beam = Beam { start: cells.middle(cube), axis, radius: 1.74 * cells.side, slope };
             let mut ids = Vec::new();
-            places.levels.along(cells, places.spheres, &cone, |id| {
+            places.levels.along(cells, places.balls, &beam, |id| {
                 ids.push(id);
                 ids.len() < LISTED
             });
@@ -102,18 +103,17 @@ impl Lamp {
     pub(super) fn light(&self, spot: &Spot, places: Option<&Places<'_>>) -> f64 {
         let mut sight = Sight::new(self, spot);
         if let (Some(places), true) = (places, sight.arriving > 0.0) {
-            let cone = Cone { start: spot.position, axis: self.toward, radius: spot.width, slope: self.slope };
+            let beam = Beam { start: spot.position, axis: self.toward, radius: spot.width, slope: self.slope };
             let listed = self.lists.of(places.cells.cube_of(spot.position));
             let is_open = listed.iter().all(|id| {
-                let (center, radius) = sphere(places.spheres, *id);
-                !cone.meets(center, radius) || sight.meets(*id, center, radius)
+                let (center, radius) = sphere(places.balls, *id);
+                !beam.meets(center, radius) || sight.meets(places, *id)
             });
             if is_open && listed.len() == LISTED {
                 let mut left = MOST;
-                places.levels.along(places.cells, places.spheres, &cone, |id| {
-                    let (center, radius) = sphere(places.spheres, id);
+                places.levels.along(places.cells, places.balls, &beam, |id| {
                     left -= 1;
-                    sight.meets(id, center, radius) && left > 0
+                    sight.meets(places, id) && left > 0
                 });
                 self.crowded.fetch_add(usize::from(left == 0), Ordering::Relaxed);
             }
@@ -149,11 +149,78 @@ impl<'a> Sight<'a> {
         Self { lamp, spot, normal: n, cosines, hidden: [0.0; DIRECTIONS], arriving, least }
     }
 
+    /// Counts a sphere or a piece of a cone in the way. Returns false if no light is left.
+    fn meets(&mut self, places: &Places<'_>, ball: u32) -> bool {
+        match places.piece(ball) {
+            Some((piece, cone)) => {
+                // A cone hides nothing from itself, because it is convex.
+                let id = places.shapes.spheres.len() as u32 + piece.cone;
+                id == self.spot.id || self.meets_piece(piece, &Axis::of(cone))
+            }
+            None => ball == self.spot.id || self.meets_sphere(sphere(places.balls, ball)),
+        }
+    }
+
+    /// Updates the sum of arriving light. Returns false if none is left.
+    fn is_left(&mut self) -> bool {
+        let hidden = &self.hidden[..self.lamp.x.len()];
+        self.arriving = self.cosines.iter().zip(hidden).map(|(cosine, hidden)| cosine * (1.0 - *hidden)).sum();
+        self.arriving > self.least
+    }
+
+    /// Counts a piece of a cone: in each direction, by its distance from where the line to the lamp comes nearest to the
+    /// axis, and at an end of the cone by the distance from its disc as it is seen. Where a piece is cut off another, it is
+    /// round, so that no seam is seen.
+    fn meets_piece(&mut self, piece: Piece, axis: &Axis) -> bool {
+        let [from, to] = [piece.from, piece.to].map(f64::from);
+        let start = (axis.at(from) - self.spot.position).as_vec3();
+        let span = ((to - from) * axis.span).as_vec3();
+        let radii = [from, to].map(|part| axis.radius(part) as f32);
+        if self.normal.dot(start) + radii[0] <= 0.0 && self.normal.dot(start + span) + radii[1] <= 0.0 {
+            return true;
+        }
+        let (square, length) = (span.length_squared(), span.length());
+        let is_cut = [piece.from > 0.0, piece.to < 1.0];
+        for k in 0..self.lamp.x.len() {
+            let direction = Vec3::new(self.lamp.x[k], self.lamp.y[k], self.lamp.z[k]);
+            let (rise, along) = (direction.dot(span), direction.dot(start));
+            // The points of the axis and of the line that are nearest to each other.
+            let across = (square - rise * rise).max(1e-6 * square);
+            let free = (rise * along - span.dot(start)) / across;
+            let part = free.clamp(0.0, 1.0);
+            let distance = along + part * rise;
+            if distance <= 0.0 {
+                continue;
+            }
+            let beside = start + part * span - distance * direction;
+            let radius = radii[0] + part * (radii[1] - radii[0]);
+            let border = (self.lamp.apart as f32 * distance).max(self.spot.width as f32);
+            // What is thinner than its border hides as much of it.
+            let wide = radius.max(0.5 * border);
+            let most = radius / wide;
+            let cosine = rise / length;
+            let sine = (1.0 - cosine * cosine).max(0.0).sqrt();
+            let end = usize::from(free > 0.5);
+            let is_end = free != part && !is_cut[end] && sine > 1e-3;
+            let beyond = if is_end { beside.dot(span - rise * direction).abs() / (length * sine) } else { 0.0 };
+            let aside = (beside.length_squared() - beyond * beyond).max(0.0).sqrt();
+            let mut hides = 0.5 + (wide - aside) / border;
+            if is_end {
+                // The disc is seen as an ellipse.
+                let disc = (wide * wide - aside * aside).max(0.0).sqrt() * cosine.abs();
+                hides = hides.min(0.5 + (disc - beyond) / border);
+            }
+            let hides = most * hides.clamp(0.0, 1.0);
+            self.hidden[k] = self.hidden[k].max(hides);
+        }
+        self.is_left()
+    }
+
     /// Counts a sphere in the way. Returns false if no light is left.
-    fn meets(&mut self, id: u32, center: DVec3, radius: f64) -> bool {
+    fn meets_sphere(&mut self, (center, radius): (DVec3, f64)) -> bool {
         let (v, radius) = ((center - self.spot.position).as_vec3(), radius as f32);
-        // Spheres below the horizon hide nothing. The spot's own sphere is one of them.
-        if id == self.spot.id || self.normal.dot(v) + radius <= 1e-3 * radius {
+        // Spheres below the horizon hide nothing.
+        if self.normal.dot(v) + radius <= 1e-3 * radius {
             return true;
         }
         let distance = v.length().max(radius);
@@ -166,9 +233,7 @@ impl<'a> Sight<'a> {
         let a = v * (slope / distance);
         let b = 0.5 * most - slope * (1.0 - wide * wide).sqrt();
         let Lamp { x, y, z, .. } = self.lamp;
-        let hidden = &mut self.hidden[..x.len()];
-        Cap { a, b, most }.hide([x, y, z], hidden);
-        self.arriving = self.cosines.iter().zip(hidden).map(|(cosine, hidden)| cosine * (1.0 - *hidden)).sum();
-        self.arriving > self.least
+        Cap { a, b, most }.hide([x, y, z], &mut self.hidden[..x.len()]);
+        self.is_left()
     }
 }

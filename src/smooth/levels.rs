@@ -1,23 +1,42 @@
-//! The spheres of a scene by size and place.
+//! The spheres of a scene, and balls around pieces of its cones, by size and place.
 
 use std::collections::BTreeSet;
 
 use glam::DVec3;
 
 use super::cells::{Cells, floor};
+use super::pieces::{Piece, Pieces};
 use super::spots::sphere;
+use crate::geometry::cone::ConeInFrame;
 use crate::parallel;
+use crate::scene::SharedShapes;
 
 /// The largest radius of the smallest level of spheres, in sides of cells. With the reach of near spheres, they touch no
 /// more than two cubes beside that of their centre.
 const LARGEST: f64 = 1.9;
 
-/// The spheres of a scene in cells and, as far as light needs them one by one, by size and place.
+/// The shapes of a scene in cells and, as far as light needs them one by one, by size and place.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Places<'a> {
-    pub(super) spheres: &'a [[f32; 4]],
+    pub(super) shapes: &'a SharedShapes,
+    pub(super) pieces: &'a Pieces,
+    /// The spheres, and then a ball around each piece. Levels have their indices.
+    pub(super) balls: &'a [[f32; 4]],
     pub(super) cells: &'a Cells,
     pub(super) levels: &'a Levels,
+}
+
+impl<'a> Places<'a> {
+    /// The pieces of cones, with their balls.
+    pub(super) fn pieces(&self) -> impl Iterator<Item = (&'a Piece, &'a [f32; 4])> {
+        self.pieces.all.iter().zip(&self.balls[self.shapes.spheres.len()..])
+    }
+
+    /// The piece, and its cone, for which a ball stands; `None` for a sphere.
+    pub(super) fn piece(&self, ball: u32) -> Option<(Piece, &'a ConeInFrame)> {
+        let piece = self.pieces.all[(ball as usize).checked_sub(self.shapes.spheres.len())?];
+        Some((piece, &self.shapes.cones[piece.cone as usize]))
+    }
 }
 
 /// The levels of spheres of similar size, from small ones on.
@@ -45,7 +64,7 @@ struct Grid {
 
 /// The points whose distance from a half line is at most `radius`, and more by `slope` along it.
 #[derive(Clone, Copy, Debug)]
-pub(super) struct Cone {
+pub(super) struct Beam {
     pub(super) start: DVec3,
     /// Unit vector.
     pub(super) axis: DVec3,
@@ -53,8 +72,8 @@ pub(super) struct Cone {
     pub(super) slope: f64,
 }
 
-impl Cone {
-    /// Returns true if a ball may meet the cone.
+impl Beam {
+    /// Returns true if a ball may meet the beam.
     pub(super) fn meets(&self, center: DVec3, radius: f64) -> bool {
         let to_center = center - self.start;
         let along = to_center.dot(self.axis);
@@ -97,9 +116,9 @@ impl Levels {
         }
     }
 
-    /// Visits the spheres that meet a cone, those of a level from its start on, until `visit` returns false.
-    pub(super) fn along(&self, cells: &Cells, spheres: &[[f32; 4]], cone: &Cone, mut visit: impl FnMut(u32) -> bool) {
-        let backwards = [0, 1, 2].map(|axis| usize::from(cone.axis[axis] < 0.0));
+    /// Visits the spheres that meet a beam, those of a level from its start on, until `visit` returns false.
+    pub(super) fn along(&self, cells: &Cells, spheres: &[[f32; 4]], beam: &Beam, mut visit: impl FnMut(u32) -> bool) {
+        let backwards = [0, 1, 2].map(|axis| usize::from(beam.axis[axis] < 0.0));
         // Large spheres hide most.
         for level in self.0.iter().rev() {
             let mut left = vec![(level.grids.len() - 1, [0; 3])];
@@ -107,13 +126,13 @@ impl Levels {
                 let Grid { side, counts, has_any } = &level.grids[depth];
                 let index = (cube[2] * counts[1] + cube[1]) * counts[0] + cube[0];
                 let middle = cells.origin + *side * (DVec3::from(cube.map(|c| c as f64)) + 0.5);
-                if has_any.get(index) == Some(&false) || !cone.meets(middle, 0.87 * side + level.largest) {
+                if has_any.get(index) == Some(&false) || !beam.meets(middle, 0.87 * side + level.largest) {
                     continue;
                 }
                 if depth == 0 {
                     for id in level.ids_of(index..index + 1) {
                         let (center, radius) = sphere(spheres, *id);
-                        if cone.meets(center, radius) && !visit(*id) {
+                        if beam.meets(center, radius) && !visit(*id) {
                             return;
                         }
                     }

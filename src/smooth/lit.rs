@@ -14,8 +14,8 @@ use crate::camera::Camera;
 use crate::geometry::math::wide;
 use crate::light::LightKind;
 use crate::render::{RenderSettings, Studio};
-use crate::scene::SceneAppearance;
 use crate::scene::material::Material;
+use crate::scene::{SceneAppearance, SharedShapes};
 
 /// The light of a studio whose lights are at the eye or infinitely far away.
 pub(super) struct Lit<'a> {
@@ -35,9 +35,9 @@ impl<'a> Lit<'a> {
         camera: &dyn Camera,
         settings: &'a RenderSettings,
         tables: &'a mut Tables,
-        spheres: &'a [[f32; 4]],
+        shapes: &'a SharedShapes,
     ) -> Option<Self> {
-        let (places, openness) = tables.parts(spheres);
+        let (places, openness) = tables.parts(shapes);
         let studio = settings.studio_parameters()?;
         let vectors = camera.vectors();
         let lamps = settings.lights.iter().filter_map(|light| match light.in_view(&vectors)? {

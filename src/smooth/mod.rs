@@ -33,6 +33,7 @@ mod levels;
 mod lists;
 mod lit;
 mod openness;
+mod pieces;
 mod spots;
 mod tables;
 
@@ -111,12 +112,12 @@ impl<'a> SmoothPicture<'a> {
         let side = u64::from(self.rays.side);
         // A ray makes at most one spot, and a pixel at an edge several.
         let spots = (pixels * (side * side).max(2)).min(2 * BAND as u64) * size_of::<Spot>() as u64;
-        let cells = Cells::new(&self.shapes.spheres);
+        let cells = Cells::new(self.shapes);
         let shadows = self.settings.studio_parameters().is_some_and(|studio| studio.shadows);
         let is_lamp = |kind| shadows && matches!(kind, LightKind::Directional { .. });
         let lamps = self.settings.lights.iter().filter(|light| is_lamp(light.kind)).count();
         spots
-            + Levels::bytes(&cells, self.shapes.spheres.len())
+            + Levels::bytes(&cells, self.shapes.len())
             + openness::Openness::bytes(&cells, pixels)
             + lamps as u64 * lamps::Lamp::bytes(&cells, pixels)
     }
@@ -179,8 +180,8 @@ impl<'a> SmoothPicture<'a> {
 
     /// The tools of drawing: they find spots, and light them.
     fn tools<'b>(&'b self, tables: &'b mut Tables) -> Option<(Finder<'a>, Lit<'b>)> {
-        let finder = Finder::new(&self.shapes.spheres, self.origin, &self.view, self.rays, self.settings);
-        Some((finder, Lit::new(self.appearance, self.view.camera, self.settings, tables, &self.shapes.spheres)?))
+        let finder = Finder::new(self.shapes, self.origin, &self.view, self.rays, self.settings);
+        Some((finder, Lit::new(self.appearance, self.view.camera, self.settings, tables, self.shapes)?))
     }
 
     /// Writes colour, opacity, albedo and samples of all pixels. `go_on` learns the completed part several times, and stops

@@ -1,15 +1,18 @@
-//! The spots of a smooth picture: places on spheres that are lit, found from the ids that pixels show.
+//! The spots of a smooth picture: places on shapes that are lit, found from the ids that pixels show.
 
 use glam::{DVec2, DVec3};
 
 use crate::camera::film::Film;
 use crate::camera::sampling::{pair, pixel_seed};
 use crate::camera::{View, filter};
+use crate::geometry::cone_crossing::intersect;
+use crate::geometry::math::wide;
 use crate::geometry::ray::Ray;
 use crate::image::NO_ID;
 use crate::render::RenderSettings;
+use crate::scene::{Shape, SharedShapes};
 
-/// A place on a sphere that a pixel shows, in the scene's frame.
+/// A place on a shape that a pixel shows, in the scene's frame.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Spot {
     pub(super) position: DVec3,
@@ -22,7 +25,7 @@ pub(super) struct Spot {
     /// Width of the pixel at that distance.
     pub(super) width: f64,
     pub(super) id: u32,
-    /// The part of the pixel that shows the sphere.
+    /// The part of the pixel that shows the shape.
     pub(super) share: f32,
 }
 
@@ -80,7 +83,7 @@ impl Rays {
 
 /// Finds the spots of a picture.
 pub(super) struct Finder<'a> {
-    spheres: &'a [[f32; 4]],
+    shapes: &'a SharedShapes,
     origin: DVec3,
     view: View<'a>,
     rays: Rays,
@@ -90,7 +93,7 @@ pub(super) struct Finder<'a> {
     with_widths: bool,
 }
 
-/// The hits of a pixel's rays on one sphere.
+/// The hits of a pixel's rays on one shape.
 #[derive(Clone, Copy)]
 struct Hits {
     id: u32,
@@ -99,6 +102,8 @@ struct Hits {
     position: DVec3,
     direction: DVec3,
     distance: f64,
+    /// The sum of the normals, which point out of the shape. Zero for spheres, whose normals follow from positions.
+    normal: DVec3,
 }
 
 impl Hits {
@@ -107,15 +112,16 @@ impl Hits {
         self.position += other.position;
         self.direction += other.direction;
         self.distance += other.distance;
+        self.normal += other.normal;
     }
 }
 
-/// The most spheres that a pixel and its neighbours show.
+/// The most shapes that a pixel and its neighbours show.
 const MOST: usize = 9;
 
 impl<'a> Finder<'a> {
     pub(super) fn new(
-        spheres: &'a [[f32; 4]],
+        shapes: &'a SharedShapes,
         origin: DVec3,
         view: &View<'a>,
         rays: Rays,
@@ -131,7 +137,7 @@ impl<'a> Finder<'a> {
         // A single ray is at the centre.
         let offsets = (0..rays.count).filter(|_| rays.count > 1).map(offset).collect();
         let with_widths = settings.studio_parameters().is_some_and(|studio| studio.shadows);
-        Self { spheres, origin, view: *view, rays, offsets, with_widths }
+        Self { shapes, origin, view: *view, rays, offsets, with_widths }
     }
 
     /// The spots of a row.
@@ -156,7 +162,7 @@ impl<'a> Finder<'a> {
     pub(super) fn pixel(&self, pixel: [u32; 2], ids: &[u32], found: &mut Row) {
         let own = ids[ids.len() / 2];
         let before = found.all.len();
-        if self.offsets.is_empty() || ids.iter().all(|id| *id == own) {
+        if self.offsets.is_empty() || ids.iter().all(|id| *id == own) && !self.turns(pixel, own) {
             found.all.extend(self.at_center(pixel, own));
         } else if self.rays.side > 1 {
             self.at_rays(pixel, ids, &mut found.all);
@@ -200,14 +206,22 @@ impl<'a> Finder<'a> {
         Some(self.spot(pixel, &self.hit(pixel, DVec2::ZERO, id)?, 1))
     }
 
-    /// The hit of a ray on a sphere that a device found.
+    /// The hit of a ray on a shape that a device found.
     fn hit(&self, pixel: [u32; 2], offset: DVec2, id: u32) -> Option<Hits> {
         let ray = self.ray(pixel, offset).filter(|_| id != NO_ID)?;
-        let (center, radius) = sphere(self.spheres, id);
+        let shape = self.shapes.shape(id);
         // A ray that a device finds to hit may miss by rounding.
-        let foot = (center - ray.origin).dot(ray.direction);
-        let distance = distance(&ray, center, radius).unwrap_or(foot);
-        Some(Hits { id, count: 1, position: ray.at(distance), direction: ray.direction, distance })
+        let (distance, normal) = crossing(&ray, &shape).unwrap_or_else(|| nearest_to(&ray, &shape));
+        Some(Hits { id, count: 1, position: ray.at(distance), direction: ray.direction, distance, normal })
+    }
+
+    /// Whether the normal of a cone turns so much within a pixel that it needs several rays, as at a rim.
+    fn turns(&self, pixel: [u32; 2], id: u32) -> bool {
+        let Some(shape @ Shape::Cone(_)) = (id != NO_ID).then(|| self.shapes.shape(id)) else { return false };
+        let normal = |offset: DVec2| Some(crossing(&self.ray(pixel, offset)?, &shape)?.1);
+        let Some(middle) = normal(DVec2::ZERO) else { return false };
+        let corners = [[-0.5, -0.5], [0.5, -0.5], [-0.5, 0.5], [0.5, 0.5]].map(DVec2::from);
+        corners.into_iter().any(|corner| normal(corner).is_none_or(|normal| normal.dot(middle) < LEAST_ALIKE))
     }
 
     /// The spots of a pixel whose rays found these ids.
@@ -225,28 +239,28 @@ impl<'a> Finder<'a> {
 
     /// The spots that rays at the fixed places hit in a pixel at an edge, among the spheres `shown`.
     fn at_edge(&self, pixel: [u32; 2], shown: &[u32], spots: &mut Vec<Spot>) {
-        let mut hits =
-            [Hits { id: NO_ID, count: 0, position: DVec3::ZERO, direction: DVec3::ZERO, distance: 0.0 }; MOST];
+        let [position, direction, normal] = [DVec3::ZERO; 3];
+        let mut hits = [Hits { id: NO_ID, count: 0, position, direction, distance: 0.0, normal }; MOST];
         let mut places = [None; MOST];
         for (place, id) in places.iter_mut().zip(shown) {
-            *place = (*id != NO_ID).then(|| sphere(self.spheres, *id));
+            *place = (*id != NO_ID).then(|| self.shapes.shape(*id));
         }
         let mut missing = 0;
         for offset in &self.offsets {
             let ray = self.ray(pixel, *offset);
-            let mut nearest: Option<(f64, usize)> = None;
+            let mut nearest: Option<(f64, usize, DVec3)> = None;
             if let Some(ray) = &ray {
-                for (k, sphere) in places[..shown.len()].iter().enumerate() {
-                    let Some((center, radius)) = *sphere else { continue };
-                    let Some(t) = distance(ray, center, radius) else { continue };
-                    if nearest.is_none_or(|(before, of)| (t, shown[k]) < (before, shown[of])) {
-                        nearest = Some((t, k));
+                for (k, shape) in places[..shown.len()].iter().enumerate() {
+                    let Some((t, normal)) = shape.as_ref().and_then(|shape| crossing(ray, shape)) else { continue };
+                    if nearest.is_none_or(|(before, of, _)| (t, shown[k]) < (before, shown[of])) {
+                        nearest = Some((t, k, normal));
                     }
                 }
             }
             match (nearest, ray) {
-                (Some((t, k)), Some(ray)) => {
-                    let hit = Hits { count: 1, position: ray.at(t), direction: ray.direction, distance: t, ..hits[k] };
+                (Some((t, k, normal)), Some(ray)) => {
+                    let position = ray.at(t);
+                    let hit = Hits { count: 1, position, direction: ray.direction, distance: t, normal, ..hits[k] };
                     hits[k].add(&hit);
                 }
                 // Nothing is known of what else the ray hits, unless the background is seen beside it.
@@ -263,27 +277,29 @@ impl<'a> Finder<'a> {
         }
     }
 
-    /// The spot in the middle of hits on one sphere, of `all` hits.
+    /// The spot in the middle of hits on one shape, of `all` hits.
     fn spot(&self, pixel: [u32; 2], hits: &Hits, all: u32) -> Spot {
-        let Hits { id, count, position, direction, distance } = *hits;
-        let (center, radius) = sphere(self.spheres, id);
+        let Hits { id, count, position, direction, distance, normal } = *hits;
         let mean = position / f64::from(count);
         let out = -direction.normalize_or(DVec3::Z);
-        let outward = (mean - center).normalize_or(out);
+        let (position, outward) = match self.shapes.shape(id) {
+            Shape::Sphere([x, y, z, radius]) => {
+                let center = wide([x, y, z]);
+                let outward = (mean - center).normalize_or(out);
+                (center + f64::from(radius) * outward, outward)
+            }
+            Shape::Cone(_) => (mean, normal.normalize_or(out)),
+        };
         // Seen from inside, the normal points inwards.
         let normal = if outward.dot(out) < -1e-3 { -outward } else { outward };
         let distance = distance / f64::from(count);
-        Spot {
-            position: center + radius * outward,
-            normal,
-            out,
-            distance,
-            width: self.width(pixel, distance),
-            id,
-            share: count as f32 / all as f32,
-        }
+        let (width, share) = (self.width(pixel, distance), count as f32 / all as f32);
+        Spot { position, normal, out, distance, width, id, share }
     }
 }
+
+/// The least cosine of the angle between two normals within a pixel that one ray shows.
+const LEAST_ALIKE: f64 = 0.9;
 
 /// Centre and radius of a sphere.
 pub(super) fn sphere(spheres: &[[f32; 4]], id: u32) -> (DVec3, f64) {
@@ -298,6 +314,30 @@ fn with_neighbors(film: &Film) -> Film {
     let last = [0, 1].map(|axis| (first[axis] + size[axis] + 1).min([whole.width(), whole.height()][axis]));
     let first = first.map(|first| first.saturating_sub(1));
     whole.part(first, [last[0] - first[0], last[1] - first[1]]).unwrap_or(*film)
+}
+
+/// The distance to the first point of a shape in front of a ray's origin, and the normal of a cone there.
+fn crossing(ray: &Ray, shape: &Shape) -> Option<(f64, DVec3)> {
+    match shape {
+        Shape::Sphere([x, y, z, radius]) => Some((distance(ray, wide([*x, *y, *z]), (*radius).into())?, DVec3::ZERO)),
+        Shape::Cone(cone) => intersect(ray, cone),
+    }
+}
+
+/// The distance at which a ray comes nearest to the middle of a shape or to the axis of a cone, and the direction from there.
+fn nearest_to(ray: &Ray, shape: &Shape) -> (f64, DVec3) {
+    match shape {
+        Shape::Sphere([x, y, z, _]) => ((wide([*x, *y, *z]) - ray.origin).dot(ray.direction), DVec3::ZERO),
+        Shape::Cone(cone) => {
+            let ([start, end], from) = (cone.ends(), ray.origin);
+            let span = end - start;
+            let (rise, along) = (span.dot(ray.direction), (start - from).dot(ray.direction));
+            let across = span.length_squared() - rise * rise;
+            let part = ((rise * along - span.dot(start - from)) / across.max(f64::MIN_POSITIVE)).clamp(0.0, 1.0);
+            let distance = along + part * rise;
+            (distance, (ray.at(distance) - (start + part * span)).normalize_or_zero())
+        }
+    }
 }
 
 /// The distance to the first point of a sphere in front of a ray's origin.

@@ -1,9 +1,10 @@
-//! The tables from which light is computed and that depend on spheres and settings alone, so that they are kept for the
-//! next picture of the same spheres.
+//! The tables from which light is computed and that depend on shapes and settings alone, so that they are kept for the
+//! next picture of the same shapes.
 
 use super::cells::Cells;
 use super::levels::{Levels, Places};
 use super::openness::Openness;
+use super::pieces::Pieces;
 use crate::render::Studio;
 use crate::scene::SharedShapes;
 
@@ -11,6 +12,7 @@ use crate::scene::SharedShapes;
 pub(super) struct Tables {
     wanted: Wanted,
     cells: Cells,
+    pieces: Pieces,
     levels: Levels,
     openness: Option<Openness>,
 }
@@ -33,17 +35,23 @@ impl Tables {
         if let Some(kept) = shapes.take::<Self>().filter(|kept| kept.wanted == wanted) {
             return kept;
         }
-        let spheres = &shapes.spheres[..];
-        let cells = Cells::new(spheres);
+        let cells = Cells::new(shapes);
+        let pieces = Pieces::new(&cells, shapes);
         let needs_levels = wanted.shadows || wanted.radius.is_some() && cells.has_near;
-        let levels = Levels::new(&cells, if needs_levels { spheres } else { &[] });
-        let places = Places { spheres, cells: &cells, levels: &levels };
+        let levels = Levels::new(&cells, if needs_levels { balls(&pieces, shapes) } else { &[] });
+        let places = Places { shapes, pieces: &pieces, balls: balls(&pieces, shapes), cells: &cells, levels: &levels };
         let openness = wanted.radius.map(|radius| Openness::new(&places, radius));
-        Self { wanted, cells, levels, openness }
+        Self { wanted, cells, pieces, levels, openness }
     }
 
-    /// The places of the spheres from which the tables were made, and the openness of points.
-    pub(super) fn parts<'a>(&'a mut self, spheres: &'a [[f32; 4]]) -> (Places<'a>, Option<&'a mut Openness>) {
-        (Places { spheres, cells: &self.cells, levels: &self.levels }, self.openness.as_mut())
+    /// The places of the shapes from which the tables were made, and the openness of points.
+    pub(super) fn parts<'a>(&'a mut self, shapes: &'a SharedShapes) -> (Places<'a>, Option<&'a mut Openness>) {
+        let (pieces, cells, levels) = (&self.pieces, &self.cells, &self.levels);
+        (Places { shapes, pieces, balls: balls(pieces, shapes), cells, levels }, self.openness.as_mut())
     }
+}
+
+/// The spheres, and a ball for every piece of a cone.
+fn balls<'a>(pieces: &'a Pieces, shapes: &'a SharedShapes) -> &'a [[f32; 4]] {
+    if shapes.cones.is_empty() { &shapes.spheres } else { &pieces.balls }
 }

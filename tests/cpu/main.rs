@@ -13,6 +13,7 @@ mod box_margin;
 mod camera;
 mod cameras;
 mod cone;
+mod cone_light;
 mod conformance;
 mod framing;
 mod generate;
