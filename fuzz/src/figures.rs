@@ -60,7 +60,7 @@ fn read_scene(text: &str, data: &Dataset) -> Result<(), String> {
         checked(path.motion(DVec3::Y))?;
     }
     if let Some(reference) = file.data() {
-        checked(reference.scene(data.clone(), &file.spheres().collect::<Vec<_>>()))?;
+        checked(reference.scene(data.clone(), &file.shapes()))?;
     }
     let Some(scene) = checked(file.scene())? else { return Ok(()) };
     checked(file.stereo_pair(&file.film, &scene))?;

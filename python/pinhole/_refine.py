@@ -204,7 +204,7 @@ class Refiner:
             tell(None)
             return
         found = int(ids[int(y * height), int(x * width)])
-        # Added spheres, such as those of bonds, have larger indices than the data's spheres.
+        # Added shapes, such as bonds, have larger indices than the data's spheres.
         tell(found if found < len(self.spheres) else None)
 
     def _move(self, serial: int, camera: Camera) -> bool:

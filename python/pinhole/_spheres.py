@@ -351,7 +351,7 @@ class Spheres:
         """Gives spheres new centres, radii or colours in place, from the sphere ``first`` on.
 
         ``positions`` has the shape (k, 3), ``radius`` (k,) and ``color`` (k, 3) or (k, 4) in uint8. Colours can change
-        only if spheres were made with such colours. The device keeps its copy, and rebuilds only the changed parts.
+        only if spheres were made with such colours. Spheres with bonds keep their places and radii. The device keeps its copy, and rebuilds only the changed parts.
         """
         centers = None if positions is None else np.ascontiguousarray(_arrays.positions("positions", positions))
         count = len(self) - first if centers is None else len(centers)

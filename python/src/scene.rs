@@ -4,7 +4,7 @@ use crate::fault::{Fault, Outcome};
 use crate::look::SceneText;
 use pinhole_data::load::Dataset;
 use pinhole_figure::color_by::JoinedKeys;
-use pinhole_figure::scene_file::{Data, DataError, DataScene};
+use pinhole_figure::scene_file::{Data, DataError, DataScene, OwnShapes};
 
 /// Facts about data in addition to the loaded data.
 #[derive(Default)]
@@ -32,7 +32,7 @@ pub(crate) fn scene_of(mut loaded: Dataset, text: &SceneText, given: DataExtras)
         keys.apply_to(by);
     }
     data.additions.keeps_radii = given.radii;
-    data.scene(loaded, &[]).map_err(|error| match error {
+    data.scene(loaded, &OwnShapes::default()).map_err(|error| match error {
         DataError::Select(error) => Fault::Input(format!("select: {error}")),
         error => Fault::input(error),
     })

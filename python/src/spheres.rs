@@ -36,6 +36,8 @@ pub(crate) struct SphereData {
     pub(crate) loaded: Option<Arc<Dataset>>,
     /// Whether the caller gave radii.
     has_radii: bool,
+    /// Whether there are bonds, which do not follow spheres that move.
+    has_bonds: bool,
     z_is_up: bool,
     /// Notes for the user.
     #[pyo3(get)]
@@ -59,15 +61,15 @@ impl SphereData {
         let has_more = !loaded.columns.is_empty() || loaded.cell.is_some();
         let kept = has_more.then(|| Arc::new(loaded.clone()));
         let has_radii = given.radii;
-        let (scene, key, notes) = match given.colors {
+        let (scene, key, notes, bonds) = match given.colors {
             // Such colours need no list of distinct colours, which takes long to make.
             Some(colors) => {
                 let scene = Scene::from_parts(loaded.spheres, colors.into());
-                (scene.map_err(Fault::input)?, None, loaded.notes)
+                (scene.map_err(Fault::input)?, None, loaded.notes, None)
             }
             None => {
-                let DataScene { scene, color_key, notes, .. } = scene_of(loaded, text, given)?;
-                (scene, color_key, notes)
+                let DataScene { scene, color_key, notes, bonds, .. } = scene_of(loaded, text, given)?;
+                (scene, color_key, notes, bonds)
             }
         };
         let scene = Mutex::new(Arc::new(scene));
@@ -76,6 +78,7 @@ impl SphereData {
             key,
             loaded: kept,
             has_radii,
+            has_bonds: bonds.is_some_and(|bonds| bonds > 0),
             z_is_up,
             notes,
             on_device: OnDevice::default(),
@@ -172,14 +175,16 @@ impl SphereData {
             let offset = [*x, *y, *z];
             [0, 1, 2].map(|axis| origin[axis] + f64::from(offset[axis]))
         };
-        let places: Vec<f64> = scene.spheres().iter().flat_map(place).collect();
-        places.into_pyarray(py).reshape([scene.len(), 3])
+        let of_data = scene.len() - scene.added();
+        let places: Vec<f64> = scene.spheres()[..of_data].iter().flat_map(place).collect();
+        places.into_pyarray(py).reshape([of_data, 3])
     }
 
     /// The radii as they are rendered, float32 of shape (n,).
     fn radii<'py>(&self, py: Python<'py>) -> Bound<'py, numpy::PyArray1<f32>> {
         let scene = self.scene();
-        scene.spheres().iter().map(|sphere| sphere[3]).collect::<Vec<_>>().into_pyarray(py)
+        let of_data = &scene.spheres()[..scene.len() - scene.added()];
+        of_data.iter().map(|sphere| sphere[3]).collect::<Vec<_>>().into_pyarray(py)
     }
 
     /// The names of the columns.
@@ -314,6 +319,11 @@ impl SphereData {
             let centers = narrow.as_deref().map(NewCenters::F32);
             let centers = centers.or(wide.as_deref().map(NewCenters::F64));
             let colors = colors.as_deref().map(NewColors::Rgba8);
+            if this.has_bonds && (centers.is_some() || radii.is_some()) {
+                return Err(Fault::Input(
+                    "these spheres have bonds, which would not follow them; make new Spheres(...) instead".to_owned(),
+                ));
+            }
             let update = SceneUpdate { first, centers, radii: radii.as_deref(), colors };
             let mut locked = this.lock();
             Arc::make_mut(&mut locked).apply(&update).map_err(Fault::input)?;

@@ -29,7 +29,8 @@ pub struct Cone {
 }
 
 /// The ends of a cone that are closed by discs. The inside is seen through others.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash, serde::Deserialize, serde::Serialize)]
+#[serde(rename_all = "kebab-case")]
 pub enum Caps {
     /// None of them, as in a tube.
     None,

@@ -69,7 +69,12 @@ impl Scene {
     /// or if there are too many spheres.
     pub fn new(spheres: &[Sphere]) -> Result<Self, SceneError> {
         let (origin, narrow, bounds) = in_own_frame(spheres, f64_parts, |bounds| bounds)?;
-        Ok(Self::in_frame(origin, (narrow, Vec::new()), appearance_of(spheres), bounds))
+        Ok(Self::in_frame(
+            origin,
+            (narrow, Vec::new()),
+            appearance_of(spheres, |sphere| (sphere.color, sphere.surface)),
+            bounds,
+        ))
     }
 
     /// A scene from spheres and their appearance. Arrays are not copied, except for spheres in f64. Spheres far from
@@ -362,11 +367,18 @@ impl SphereArray {
     }
 }
 
-/// The appearance of the spheres. It has all distinct colours and surface properties, in the order of first use, and
-/// their indices for each sphere.
-fn appearance_of(spheres: &[Sphere]) -> Appearance {
-    let colors = Colors::of_palette(distinct(spheres, |sphere| keyed(sphere.color)));
-    let (surfaces, surface_indices) = distinct(spheres, |sphere| (sphere.surface, sphere.surface.bits()));
+impl Appearance {
+    /// The distinct colours and surface properties, in the order of first use, and their indices for each shape.
+    #[must_use]
+    pub fn distinct(looks: &[(LinearRgb, SurfaceProperties)]) -> Self {
+        appearance_of(looks, |look| *look)
+    }
+}
+
+fn appearance_of<S>(shapes: &[S], look: impl Fn(&S) -> (LinearRgb, SurfaceProperties)) -> Appearance {
+    let colors = Colors::of_palette(distinct(shapes, |shape| keyed(look(shape).0)));
+    let surface_of = |shape: &S| look(shape).1;
+    let (surfaces, surface_indices) = distinct(shapes, |shape| (surface_of(shape), surface_of(shape).bits()));
     let surfaces = if surfaces.is_empty() { vec![SurfaceProperties::default()] } else { surfaces };
     Appearance::new(colors).with(surfaces, surface_indices)
 }

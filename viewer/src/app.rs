@@ -212,7 +212,7 @@ impl App {
         let is_new = |old: &News| !Arc::ptr_eq(&old.facts.scene, &news.facts.scene);
         if self.news.as_deref().is_none_or(is_new) {
             let (scene, columns) = (&news.facts.scene, &news.facts.columns);
-            let same = |old: &News| old.facts.scene.len() == scene.len();
+            let same = |old: &News| old.facts.scene.shape_count() == scene.shape_count();
             let keeps = self.news.as_deref().is_some_and(same);
             let picked = self.picked.take().filter(|_| keeps);
             self.picked = picked.and_then(|old| Details::of(scene, columns, old.id));

@@ -1,4 +1,4 @@
-//! Details of a picked sphere.
+//! Details of a picked shape.
 
 use std::sync::Arc;
 
@@ -6,14 +6,15 @@ use pinhole::glam::DVec3;
 use pinhole::scene::Scene;
 use pinhole_data::load::{Column, ColumnValues};
 
-/// A picked sphere, with its values.
+/// A picked shape, with its values.
 #[derive(Clone, Debug, PartialEq)]
 pub(crate) struct Details {
-    /// Index of the sphere in the scene.
+    /// Index of the shape in the scene.
     pub(crate) id: u32,
     pub(crate) center: DVec3,
+    /// The radius; of a cone, the larger one.
     pub(crate) radius: f64,
-    /// Whether the sphere was added to the data, such as those of bonds.
+    /// Whether the shape is none of the data's spheres, such as a bond.
     pub(crate) is_added: bool,
     pub(crate) rows: Vec<Row>,
 }
@@ -28,12 +29,18 @@ pub(crate) struct Row {
 }
 
 impl Details {
-    /// Describes a sphere; `None` if the scene has no such sphere.
+    /// Describes a shape; `None` if the scene has no such shape.
     pub(crate) fn of(scene: &Arc<Scene>, columns: &[Column], id: u32) -> Option<Self> {
         let index = id as usize;
-        let sphere = scene.spheres().get(index)?;
-        let [x, y, z, radius] = sphere.map(f64::from);
-        let center = scene.origin() + DVec3::new(x, y, z);
+        let wide = |[x, y, z]: [f32; 3]| DVec3::new(x.into(), y.into(), z.into());
+        let (center, radius) = match scene.spheres().get(index) {
+            Some(&[x, y, z, radius]) => (wide([x, y, z]), radius),
+            None => {
+                let cone = scene.cones().get(index - scene.len())?;
+                (0.5 * (wide(cone.start) + wide(cone.end)), cone.first_radius.abs().max(cone.second_radius.abs()))
+            }
+        };
+        let (center, radius) = (scene.origin() + center, radius.into());
         let of_data = scene.len() - scene.added();
         let is_added = index >= of_data;
         let rows = columns.iter().filter(|_| !is_added).filter_map(|column| {
@@ -55,7 +62,7 @@ impl Details {
     /// A short name, such as `CA 42 A`, from the columns of files of atoms.
     pub(crate) fn title(&self) -> String {
         if self.is_added {
-            return "bond or edge of the cell".to_owned();
+            return "bond, cone, or edge of the cell".to_owned();
         }
         let of = |names: &[&str]| names.iter().find_map(|name| self.value(name));
         let kind = of(&["name", "atom", "species", "type"]);
@@ -99,6 +106,7 @@ pub(crate) fn readable(number: f64) -> String {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use pinhole::scene::cone::Cone;
     use pinhole_data::load::{self, Options};
 
     #[test]
@@ -106,15 +114,17 @@ mod tests {
         let text = "2\nProperties=species:S:1:pos:R:3:charge:R:1\nO 0 0 0 -0.8\nH 0.96 0 0 0.4\n";
         let loaded = load::from_bytes(text.as_bytes(), "a.xyz", &Options::default()).unwrap();
         let columns = loaded.columns.clone();
-        let scene = Arc::new(loaded.scene(pinhole::LinearRgb::WHITE).unwrap());
+        let scene = Arc::new(loaded.clone().scene(pinhole::LinearRgb::WHITE).unwrap());
         let details = Details::of(&scene, &columns, 1).unwrap();
         assert_eq!((details.value("species"), details.value("charge")), (Some("H"), Some("0.4")));
         assert_eq!(details.title(), "H");
         assert_eq!(details.rows[0].select.as_deref(), Some("species == \"H\""));
         assert_eq!(Details::of(&scene, &columns, 2), None);
-        let added = Arc::new(Scene::clone(&scene).with_added(1));
-        let bond = Details::of(&added, &columns, 1).unwrap();
+        let bond = Cone::cylinder([0.0; 3], [0.96, 0.0, 0.0], 0.1);
+        let bonded = Scene::from_shapes(loaded.spheres, &[bond], pinhole::LinearRgb::WHITE.into()).unwrap();
+        let bond = Details::of(&Arc::new(bonded), &columns, 2).unwrap();
         assert!(bond.is_added && bond.rows.is_empty());
+        assert!((bond.center.x - 0.48).abs() < 1e-6 && (bond.radius - 0.1).abs() < 1e-6);
     }
 
     #[test]

@@ -166,16 +166,18 @@ fn of_scene(path: &Path, given: &Given) -> Result<Report, Failure> {
         integrator: settings.integrator.name(),
         samples: if settings.integrator.is_primary() { 1 } else { settings.sampling.samples },
         lights: settings.lights.len(),
+        cones: input.file.shapes().cones.len(),
         files: input.files.iter().skip(1).map(|file| file.display().to_string()).collect(),
     });
     let bounds = scene.bounds();
-    let radii = scene.spheres().iter().map(|sphere| f64::from(sphere[3]));
+    let spheres = scene.len() - scene.added();
+    let radii = scene.spheres()[..spheres].iter().map(|sphere| f64::from(sphere[3]));
     Ok(Report {
         version: env!("CARGO_PKG_VERSION"),
         file: path.display().to_string(),
         bytes: path.metadata().ok().map(|found| found.len()),
         kind,
-        spheres: scene.len() - scene.added(),
+        spheres,
         min: bounds.as_ref().map(|bounds| bounds.min().to_array()),
         max: bounds.as_ref().map(|bounds| bounds.max().to_array()),
         radius_min: radii.clone().reduce(f64::min),
@@ -253,6 +255,8 @@ pub(crate) struct SceneReport {
     pub(crate) integrator: &'static str,
     pub(crate) samples: u32,
     pub(crate) lights: usize,
+    /// The number of cones and cylinders in the file itself.
+    pub(crate) cones: usize,
     /// Other files that the scene names.
     pub(crate) files: Vec<String>,
 }
@@ -302,12 +306,15 @@ pub(crate) fn readable(report: &Report) -> String {
             }
         }
         Kind::Scene(scene) => {
-            let SceneReport { width, height, camera, stereo, integrator, samples, lights, files } = scene;
+            let SceneReport { width, height, camera, stereo, integrator, samples, lights, cones, files } = scene;
             line("picture", format!("{width}x{height}"));
             line("camera", format!("{camera}{}", if *stereo { ", stereo" } else { "" }));
             line("integrator", (*integrator).to_owned());
             line("samples", samples.to_string());
             line("lights", lights.to_string());
+            if *cones > 0 {
+                line("cones", cones.to_string());
+            }
             for file in files {
                 line("file", whole_line(file));
             }

@@ -14,7 +14,6 @@ use crate::terminal::failure::Failure;
 use crate::terminal::{profile, progress};
 use pinhole::image::color::LinearRgb;
 use pinhole::scene::Scene;
-use pinhole::scene::sphere::Sphere;
 use pinhole_data::load::{self, Column, Dataset};
 use pinhole_data::select::KeptSpheres;
 use pinhole_figure::color_by::{ColorBy, ColorKey};
@@ -179,9 +178,8 @@ impl Source {
             let note = kinds.as_ref().map(|by| by.note_of_kinds("--color CSS"));
             loaded.notes.extend(note.map(|note| format!("{}: {note}", self.path.display())));
         }
-        let own: Vec<Sphere> = file.spheres().collect();
-        let made = data.scene(loaded, &own).map_err(|error| match error {
-            DataError::Scene(error) if !is_data => Error::new(file.at_sphere(&error)).context(file_name()),
+        let made = data.scene(loaded, &file.shapes()).map_err(|error| match error {
+            DataError::Scene(error) if !is_data => Error::new(file.at_shape(&error)).context(file_name()),
             DataError::Select(error) if is_data => Error::new(error).context("--select").context(file_name()),
             error => Error::new(error).context(in_scene()),
         });

@@ -169,6 +169,7 @@ impl Source {
         let report = Report {
             path: self.path.display().to_string(),
             spheres: self.bricks.as_ref().map_or(scene.len() - scene.added(), |bricks| bricks.whole().count as usize),
+            cones: file.shapes().cones.len(),
             selected_from: kept.map(|kept| kept.of),
             bonds,
             has_atoms,

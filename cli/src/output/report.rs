@@ -30,6 +30,8 @@ pub(crate) struct Report {
     pub(crate) spheres: usize,
     /// The number of spheres before a selection.
     pub(crate) selected_from: Option<usize>,
+    /// The number of cones and cylinders in the scene file itself.
+    pub(crate) cones: usize,
     pub(crate) bonds: Option<usize>,
     pub(crate) has_atoms: bool,
     pub(crate) style: Option<Style>,
@@ -65,11 +67,12 @@ impl Report {
             Some(all) => format!("kept {} of {}", grouped(self.spheres), grouped(all)),
             None => grouped(self.spheres),
         };
-        let bonds = self
-            .bonds
-            .map_or(String::new(), |bonds| format!(", {} bond{}", grouped(bonds), if bonds == 1 { "" } else { "s" }));
+        let more =
+            |count: usize, noun: &str| format!(", {} {noun}{}", grouped(count), if count == 1 { "" } else { "s" });
+        let cones = if self.cones > 0 { more(self.cones, "cone") } else { String::new() };
+        let bonds = self.bonds.map_or(String::new(), |bonds| more(bonds, "bond"));
         let path = &self.path;
-        format!("{path}: {start}{count} {noun}{plural}{bonds}{flags}; {:.1} s", elapsed.as_secs_f64())
+        format!("{path}: {start}{count} {noun}{plural}{cones}{bonds}{flags}; {:.1} s", elapsed.as_secs_f64())
     }
 }
 

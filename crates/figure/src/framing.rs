@@ -22,23 +22,16 @@ const SAMPLE: usize = 1 << 14;
 #[derive(Clone, Debug, Default)]
 pub struct Union {
     spheres: Vec<[f64; 4]>,
-    /// Spheres that were added to those of the data.
+    /// Spheres that were added to those of the data, and those at the ends of cones.
     added: Vec<[f64; 4]>,
 }
 
 impl Union {
-    /// Adds the spheres of a scene.
+    /// Adds the spheres of a scene, and those around the ends of its cones.
     pub fn add(&mut self, scene: &Scene) {
-        let origin = scene.origin();
         let (of_data, added) = scene.spheres().split_at(scene.len() - scene.added());
-        for (all, new) in [(&mut self.spheres, of_data), (&mut self.added, added)] {
-            for chunk in new.chunks(MOST / 2) {
-                if all.len() + chunk.len() > MOST {
-                    reduce(all);
-                }
-                all.extend(chunk.iter().map(|sphere| in_world(origin, sphere)));
-            }
-        }
+        gather(&mut self.spheres, scene.origin(), of_data.iter().copied());
+        gather(&mut self.added, scene.origin(), added.iter().copied().chain(ends(scene)));
     }
 
     /// Returns the kept spheres, and the number of those, at the end, that were added to the data.
@@ -57,6 +50,30 @@ impl Union {
         let (spheres, added) = self.into_spheres();
         scene_of(&spheres, added)
     }
+}
+
+fn gather(all: &mut Vec<[f64; 4]>, origin: DVec3, new: impl Iterator<Item = [f32; 4]>) {
+    for sphere in new {
+        if all.len() == MOST {
+            reduce(all);
+        }
+        all.push(in_world(origin, sphere));
+    }
+}
+
+/// Spheres around the ends of a scene's cones. They reach a little farther than flat cones.
+fn ends(scene: &Scene) -> impl Iterator<Item = [f32; 4]> {
+    scene.cones().iter().flat_map(|cone| {
+        let [first, second] = [cone.first_radius, cone.second_radius].map(f32::abs);
+        // A tip is a small sphere.
+        let least = 1e-4 * first.max(second);
+        [(cone.start, first), (cone.end, second)].map(|([x, y, z], radius)| [x, y, z, radius.max(least)])
+    })
+}
+
+/// All spheres of a scene and those around the ends of its cones, in world space.
+fn all_of(scene: &Scene) -> Vec<[f64; 4]> {
+    scene.spheres().iter().copied().chain(ends(scene)).map(|sphere| in_world(scene.origin(), sphere)).collect()
 }
 
 /// Makes a scene of spheres, the last `added` of which were added to the data.
@@ -84,7 +101,7 @@ fn sample(spheres: &[[f64; 4]]) -> impl Iterator<Item = [f64; 4]> {
     spheres.iter().step_by(spheres.len().div_ceil(SAMPLE).max(1)).copied()
 }
 
-fn in_world(origin: DVec3, sphere: &[f32; 4]) -> [f64; 4] {
+fn in_world(origin: DVec3, sphere: [f32; 4]) -> [f64; 4] {
     let [x, y, z, radius] = sphere.map(f64::from);
     let center = origin + DVec3::new(x, y, z);
     [center.x, center.y, center.z, radius]
@@ -99,7 +116,7 @@ pub fn swept(scene: &Scene, axis: DVec3, center: DVec3) -> Result<Scene, SceneEr
     const PROFILE: usize = 64;
     /// Number of steps of a full turn.
     const STEPS: usize = 72;
-    let spheres: Vec<[f64; 4]> = scene.spheres().iter().map(|sphere| in_world(scene.origin(), sphere)).collect();
+    let spheres = all_of(scene);
     let farthest = |index: usize| {
         let (sine, cosine) = (PI * (index as f64 / (PROFILE - 1) as f64 - 0.5)).sin_cos();
         let reach = |&[x, y, z, radius]: &[f64; 4]| {
@@ -118,7 +135,7 @@ pub fn swept(scene: &Scene, axis: DVec3, center: DVec3) -> Result<Scene, SceneEr
             [at.x, at.y, at.z, radius]
         })
     });
-    body(&spheres[..spheres.len() - scene.added()], on_surface)
+    body(&spheres[..scene.len() - scene.added()], on_surface)
 }
 
 /// A scene of spheres on a surface, with some of the data's own for the mean radius.
@@ -136,7 +153,7 @@ fn body(of_data: &[[f64; 4]], on_surface: impl Iterator<Item = [f64; 4]>) -> Res
 /// Returns an error if the ball is too large for a scene.
 pub fn around(scene: &Scene) -> Result<Scene, SceneError> {
     let center = scene.bounds_to_frame().center();
-    let spheres: Vec<[f64; 4]> = scene.spheres().iter().map(|sphere| in_world(scene.origin(), sphere)).collect();
+    let spheres = all_of(scene);
     let reach = |&[x, y, z, radius]: &[f64; 4]| DVec3::new(x, y, z).distance(center) + radius;
     let Some(farthest) = spheres.iter().max_by(|a, b| reach(a).total_cmp(&reach(b))) else {
         return Scene::from_f64(&[], LinearRgb::WHITE);
@@ -147,7 +164,7 @@ pub fn around(scene: &Scene) -> Result<Scene, SceneError> {
         let at = center + beside * of_spiral(index, 4 * DIRECTIONS);
         [at.x, at.y, at.z, radius]
     });
-    body(&spheres[..spheres.len() - scene.added()], on_surface)
+    body(&spheres[..scene.len() - scene.added()], on_surface)
 }
 
 /// One of the directions of a spiral, which are about equally spaced.

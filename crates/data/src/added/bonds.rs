@@ -4,12 +4,14 @@ use std::collections::HashMap;
 
 use glam::{DVec3, I64Vec3};
 
-use super::spheres::{AddError, AddedSpheres, Look, string_between, string_count};
+use super::shapes::{AddError, AddedShapes, Look};
 use crate::load::{Covalent, Dataset, covalent};
 use pinhole::internals::text::{listed, shortened};
+use pinhole::scene::Appearance;
+use pinhole::scene::material::Material;
 use pinhole::scene::sphere_array::SphereArray;
 
-/// The choice of bonded atoms. Bonds are drawn as sticks, each half in the colour of its atom.
+/// The choice of bonded atoms. Bonds are drawn as cylinders, each half with the look of its atom.
 #[derive(Clone, Debug, PartialEq)]
 #[non_exhaustive]
 pub struct Bonds {
@@ -55,13 +57,6 @@ const OTHER_BALL: f64 = 0.5;
 /// The radius of a stick, in radii of the smaller of the spheres that it joins.
 const STICK: f64 = 0.45;
 
-/// The distance of centres on a stick, in radii of the stick. The surface is at most 2 % of the radius below that of a
-/// cylinder, and its normals lean by at most 11.5°.
-const SPACING: f64 = 0.4;
-
-/// Maximum number of added spheres: so many for each sphere on average, and so many more in any case.
-const MOST_ADDED: [usize; 2] = [256, 1 << 16];
-
 /// The factor by which bonds make a sphere of a species smaller.
 pub(super) fn radius_factor(species: Option<&str>) -> f64 {
     if species.and_then(covalent).is_some() { BALL } else { OTHER_BALL }
@@ -73,7 +68,7 @@ fn center(spheres: &SphereArray, index: usize) -> (DVec3, f64) {
 }
 
 impl Bonds {
-    pub(super) fn add(&self, data: &Dataset, added: &mut AddedSpheres) -> Result<(), AddError> {
+    pub(super) fn add(&self, data: &Dataset, appearance: &Appearance, added: &mut AddedShapes) -> Result<(), AddError> {
         let count = data.spheres.len();
         let points: Vec<DVec3> = (0..count).map(|index| center(&data.spheres, index).0).collect();
         let bonds = match self.length {
@@ -87,35 +82,36 @@ impl Bonds {
             }
         };
         added.bonds = bonds.len();
-        let most = count.saturating_mul(MOST_ADDED[0]).saturating_add(MOST_ADDED[1]);
+        let surface = |id: u32| appearance.surface_indices().and_then(|all| all.get(id as usize).copied());
         for [a, b] in bonds {
             let ((from, ball_a), (to, ball_b)) = (center(&data.spheres, a as usize), center(&data.spheres, b as usize));
             let radius = STICK * ball_a.min(ball_b);
             let (length, middle) = ((to - from).length(), 0.5 * (from + to));
             let along = (to - from) / length;
-            // The stick leaves a ball at this distance from its centre. Deeper parts of the stick cannot be seen.
+            // The stick leaves a ball at this distance from its centre.
             let [out_a, out_b] = [ball_a, ball_b].map(|ball| (ball * ball - radius * radius).max(0.0).sqrt());
-            let halves = [
-                (a, from + out_a * along, middle, 0.5 * length - out_a),
-                (b, to - out_b * along, middle, 0.5 * length - out_b),
-            ];
-            for (atom, start, end, seen) in halves {
-                if !(seen > 0.0 && radius > 0.0) {
-                    continue;
-                }
-                let wanted = string_count(seen, radius, SPACING);
-                if wanted > (most - added.len().min(most)) as f64 {
-                    return Err(AddError(format!(
-                        "the bonds of {count} spheres would need more than {most} spheres, because they are thin for \
-                         their length; choose larger radii"
-                    )));
-                }
-                let string = string_between(start, end, radius, wanted as usize);
-                added.push(string, Look::Sphere(atom));
+            // It starts deeper by its radius, so that no part is short, but not behind the centre.
+            let deep = |out: f64| (out - radius).max(0.0) * along;
+            let ends = [from + deep(out_a), to - deep(out_b)];
+            let halves = [(a, [ends[0], middle], 0.5 * length - out_a), (b, [middle, ends[1]], 0.5 * length - out_b)];
+            let whole = [(a, ends, length - out_a - out_b)];
+            let are_alike = appearance.color(a) == appearance.color(b) && surface(a) == surface(b);
+            let parts = if are_alike { &whole[..] } else { &halves };
+            for (atom, ends, _) in parts.iter().filter(|(.., seen)| *seen > 0.0 && radius > 0.0) {
+                added.push(*ends, radius, Look::Sphere(*atom)).map_err(|error| {
+                    AddError(format!(
+                        "the bond between the spheres {a} and {b} cannot be drawn: {error}; choose larger radii, or a \
+                         smaller factor or length of bonds"
+                    ))
+                })?;
             }
         }
         if data.cell.is_some() {
             added.notes.push("bonds across the borders of the periodic cell are not drawn".to_owned());
+        }
+        let shines = appearance.surfaces().iter().any(|surface| matches!(surface.material, Material::Emissive { .. }));
+        if shines && added.bonds > 0 {
+            added.notes.push("bonds of spheres that emit light are drawn without light".to_owned());
         }
         Ok(())
     }

@@ -1,20 +1,20 @@
-//! Spheres that are added to those of data: the edges of the periodic cell, and bonds between atoms.
+//! Shapes that are added to the spheres of data: the edges of the periodic cell, and bonds between atoms.
 //!
-//! An edge or a bond is a string of spheres: a row that overlaps so far that it looks like a stick. Added spheres come
-//! after the spheres of the data, whose indices stay as they are, and do not affect properties of the data, such as the
-//! range of colours. [`Additions`] holds the choices.
+//! Edges and bonds are cylinders. Spheres at the corners of the cell, which join its edges, come after the spheres of the
+//! data. So the indices of these stay as they are, and added shapes do not affect properties of the data, such as the range
+//! of colours. [`Additions`] holds the choices.
 
 mod bonds;
-mod spheres;
+mod shapes;
 
 pub use bonds::{BondLength, Bonds};
-pub use spheres::{AddError, AddedSpheres};
+pub use shapes::{AddError, AddedShapes};
 
 use glam::DVec3;
 
 use crate::load::{ColumnValues, Dataset};
-use pinhole::image::color::LinearRgb;
-use spheres::{Look, string_between, string_count};
+use pinhole::scene::Appearance;
+use shapes::Look;
 
 /// The shapes to add to the spheres of data.
 #[derive(Clone, Debug, Default, PartialEq)]
@@ -55,14 +55,14 @@ impl Additions {
         loaded.spheres.map_radii(|row, radius| radius * factor(row));
     }
 
-    /// Returns the spheres to add to these spheres of data.
+    /// Returns the shapes to add to spheres of data with this appearance.
     ///
     /// # Errors
     /// Returns an error if there is no cell to draw, if no bonds can be found, or if a length is out of range.
-    pub fn add(&self, data: &Dataset) -> Result<AddedSpheres, AddError> {
-        let mut added = AddedSpheres::default();
+    pub fn add(&self, data: &Dataset, appearance: &Appearance) -> Result<AddedShapes, AddError> {
+        let mut added = AddedShapes::default();
         if let Some(bonds) = &self.bonds {
-            bonds.add(data, &mut added)?;
+            bonds.add(data, appearance, &mut added)?;
         }
         if let Some(edges) = &self.cell {
             edges.add(data, &mut added)?;
@@ -71,7 +71,7 @@ impl Additions {
     }
 }
 
-/// The twelve edges of the periodic cell, drawn as sticks.
+/// The twelve edges of the periodic cell, drawn as cylinders.
 #[derive(Clone, Debug, Default, PartialEq)]
 #[non_exhaustive]
 pub struct CellEdges {
@@ -82,14 +82,8 @@ pub struct CellEdges {
 /// The default width of edges, as a share of the longest diagonal.
 const WIDTH: f64 = 1.0 / 300.0;
 
-/// The least width of edges, as a share of the diagonal: it keeps the number of spheres below some hundred thousand.
-const LEAST_WIDTH: f64 = 1.0 / 20_000.0;
-
-/// The distance of centres on an edge, in radii. Edges are a few pixels wide, so single spheres cannot be seen.
-const SPACING: f64 = 0.6;
-
-/// The colour of edges in 8-bit sRGB: a dark grey, near that of outlines, which are as wide as an edge.
-const COLOR: [u8; 3] = [0x33, 0x38, 0x3f];
+/// The least width of edges, as a share of the diagonal: cylinders must not be thinner for their length.
+const LEAST_WIDTH: f64 = 1.0 / 4000.0;
 
 impl CellEdges {
     /// Edges of this width.
@@ -98,7 +92,7 @@ impl CellEdges {
         Self { width: Some(width) }
     }
 
-    fn add(&self, data: &Dataset, added: &mut AddedSpheres) -> Result<(), AddError> {
+    fn add(&self, data: &Dataset, added: &mut AddedShapes) -> Result<(), AddError> {
         let edges = data.cell.ok_or_else(|| {
             AddError(
                 "the data has no periodic cell, so there is no box to draw; leave out `--box`, or the key `box`"
@@ -118,23 +112,17 @@ impl CellEdges {
         let width = self.width.unwrap_or(WIDTH * diagonal);
         if !(LEAST_WIDTH * diagonal..=diagonal).contains(&width) {
             return Err(AddError(format!(
-                "`box`: the width of the edges is {width}; it must lie between 1/20000 of the diagonal of the cell, which \
+                "`box`: the width of the edges is {width}; it must lie between 1/4000 of the diagonal of the cell, which \
                  is {diagonal:.4}, and the diagonal"
             )));
         }
         let radius = 0.5 * width;
-        let look = Look::Own(LinearRgb::from_srgb8(COLOR));
-        // Four edges are parallel to each of the three.
+        // Four edges are parallel to each of the three. Shorter ones are hidden by the spheres at the corners.
         for (edge, [one, other]) in [(a, [b, c]), (b, [c, a]), (c, [a, b])] {
-            let length = edge.length();
-            if length <= 0.0 {
-                continue;
-            }
-            // The spheres of an edge end half a distance before its corners. Spheres at the corners join the edges.
-            let count = string_count(length, radius, SPACING) as usize;
-            for start in [DVec3::ZERO, one, other, one + other] {
+            for start in [DVec3::ZERO, one, other, one + other].into_iter().filter(|_| edge.length() > radius) {
                 let start = origin + start;
-                added.push(string_between(start, start + edge, radius, count), look);
+                let refused = |error| AddError(format!("an edge of the periodic cell cannot be drawn: {error}"));
+                added.push([start, start + edge], radius, Look::Edge).map_err(refused)?;
             }
         }
         let ends = [0.0, 1.0];
@@ -146,7 +134,7 @@ impl CellEdges {
                 })
             })
         });
-        added.push(corners, look);
+        added.corners.extend(corners);
         Ok(())
     }
 }

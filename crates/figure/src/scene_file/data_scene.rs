@@ -1,12 +1,11 @@
 //! Makes the scene of data, as the keys of a scene file say.
 
 use super::data::{Data, Element};
+use super::shapes::OwnShapes;
 use super::span::DEFAULT_COLOR;
 use crate::color_by::{ColorBy, ColorByError, ColorKey};
 use pinhole::image::color::LinearRgb;
-use pinhole::scene::sphere::Sphere;
-use pinhole::scene::sphere_array::SphereArray;
-use pinhole::scene::{Appearance, Colors, Scene, SceneError};
+use pinhole::scene::{Colors, Scene, SceneError};
 use pinhole_data::added::AddError;
 use pinhole_data::load::{Column, ColumnValues, Dataset, Labels};
 use pinhole_data::select::{KeptSpheres, SelectError};
@@ -15,7 +14,8 @@ use pinhole_data::select::{KeptSpheres, SelectError};
 #[derive(Clone, Debug)]
 #[non_exhaustive]
 pub struct DataScene {
-    /// The scene: first the spheres of the scene file, then those of the data, and last those that were added.
+    /// The scene: spheres of the scene file, those of the data, and those that were added; then cones of the scene file,
+    /// and sticks that were added.
     pub scene: Scene,
     /// What colours mean, if a column gives them.
     pub color_key: Option<ColorKey>,
@@ -66,12 +66,12 @@ impl Data {
     /// strengths of light, then the tables of elements, then the file, and last the keys for all spheres. Opacities of
     /// the file are multiplied by those of the keys. Bonds and the edges of the cell come last.
     ///
-    /// `own` are the spheres of the scene file. If there are none, the array of the data is not copied.
+    /// `own` are the shapes of the scene file. If there are none, the array of the data is not copied.
     ///
     /// # Errors
     /// If a key names a column that the data does not have, or whose values cannot be used; if it selects nothing; if
     /// the data lacks what bonds or a box need; or if a sphere is out of range.
-    pub fn scene(&self, mut loaded: Dataset, own: &[Sphere]) -> Result<DataScene, DataError> {
+    pub fn scene(&self, mut loaded: Dataset, own: &OwnShapes) -> Result<DataScene, DataError> {
         let kept = self.select.as_ref().map(|select| select.apply(&mut loaded)).transpose()?;
         let has_radii = self.mapping.radius.is_some();
         let by_species = self.elements_by.is_empty() || self.elements_by.iter().any(|column| column == "species");
@@ -107,17 +107,13 @@ impl Data {
         let differ = surfaces.iter().any(|surface| *surface != self.surface);
         let surface_of: &[u32] = if differ { &elements } else { &[] };
         let mut appearance = mapped.appearance(count, colors, &surfaces, surface_of);
-        let added = self.additions.add(&loaded)?;
+        let added = self.additions.add(&loaded, &appearance)?;
         notes.extend_from_slice(added.notes());
         if !added.is_empty() {
             appearance = added.extend_appearance(&appearance, count);
             added.extend_array(&mut loaded.spheres);
         }
-        let scene = match own {
-            [] => Scene::from_parts(loaded.spheres, appearance)?,
-            _ => Scene::new(&joined(own, &loaded.spheres, &appearance))?,
-        };
-        let scene = scene.with_added(added.len());
+        let scene = own.scene_with(loaded.spheres, added.sticks(), appearance)?.with_added(added.sphere_count());
         let bonds = self.additions.bonds.as_ref().map(|_| added.bonds());
         Ok(DataScene { scene, color_key, columns: loaded.columns, notes, kept, bonds })
     }
@@ -224,18 +220,4 @@ impl Data {
         loaded.keep(&is_kept);
         Ok(notes)
     }
-}
-
-/// The spheres of a scene file, and those of an array with their appearance.
-fn joined(own: &[Sphere], array: &SphereArray, appearance: &Appearance) -> Vec<Sphere> {
-    let surface_of = |id: usize| {
-        let index = appearance.surface_indices().map_or(Some(0), |all| all.get(id).copied())?;
-        appearance.surfaces().get(index as usize).copied()
-    };
-    let of_data = array.with_color(LinearRgb::WHITE).enumerate().map(|(id, mut sphere)| {
-        sphere.color = appearance.color(id as u32).unwrap_or(sphere.color);
-        sphere.surface = surface_of(id).unwrap_or_default();
-        sphere
-    });
-    own.iter().copied().chain(of_data).collect()
 }

@@ -10,7 +10,8 @@ use super::data::{BondsValue, BoxValue, Data, Element, ElementTable, positive};
 use super::lighting::{DirectionalTable, GroundTable, IntegratorKind, LightTable, SkyTable};
 use super::mapping::{ByColumn, ColumnTable};
 use super::materials::{Materials, over};
-use super::span::{KeyError, SceneFileError, WithSpan, default_color, unknown};
+use super::shapes::{ConeTable, CylinderTable, SphereTable};
+use super::span::{KeyError, SceneFileError, WithSpan, unknown};
 use crate::annotate::{AnnotationPlan, Annotations, Label, LegendPlan, ScaleBarPlan, TextPlan};
 use crate::color_by::{ColorBy, EmissionBy, Mapping, RadiusBy};
 use crate::settings::layers::Joined;
@@ -20,11 +21,10 @@ use pinhole::camera::film::{Film, YAxis};
 use pinhole::image::color::LinearRgb;
 use pinhole::image::encoding::{Bits, Encoding, EncodingError};
 use pinhole::image::tone::ToneCurve;
-use pinhole::internals::exact::{List, Table};
+use pinhole::internals::exact::Table;
 use pinhole::range::RangeError;
 use pinhole::render::{PathTracing, Sampling, Shading, Studio};
 use pinhole::scene::material::SurfaceProperties;
-use pinhole::scene::sphere::Sphere;
 use pinhole_data::added::Additions;
 use pinhole_data::load::FORMATS;
 
@@ -119,6 +119,12 @@ pub(crate) struct Document {
     /// Spheres, which come before those of the data.
     #[serde(skip_serializing_if = "Vec::is_empty")]
     pub(super) spheres: Vec<Spanned<Table<SphereTable>>>,
+    /// Cylinders, which come after all spheres.
+    #[serde(skip_serializing_if = "Vec::is_empty")]
+    pub(super) cylinders: Vec<Spanned<Table<CylinderTable>>>,
+    /// Cones, which come after the cylinders.
+    #[serde(skip_serializing_if = "Vec::is_empty")]
+    pub(super) cones: Vec<Spanned<Table<ConeTable>>>,
 }
 
 /// The keys at the top of a scene file that apply to its data, beside the tables `[elements.NAME]`.
@@ -227,20 +233,6 @@ impl Document {
         })
     }
 
-    /// The spheres of the file itself.
-    pub(super) fn own_spheres(&self, places: &Places<'_>) -> Result<Vec<WithSpan<Sphere>>, SceneFileError> {
-        let sphere = |(index, table): (usize, &Spanned<Table<SphereTable>>)| {
-            let Table(SphereTable { center, radius, color, material, opacity }) = table.get_ref();
-            let base = SurfaceProperties::default();
-            let surface = over(&self.materials, base, material.as_deref(), *opacity)
-                .map_err(|error| places.refused(&format!("spheres.{index}"), error))?;
-            let mut value = Sphere::new(center.0, *radius, *color);
-            value.surface = surface;
-            Ok(WithSpan { value, span: places.lines.span(table.span().start) })
-        };
-        self.spheres.iter().enumerate().map(sphere).collect()
-    }
-
     /// What is drawn over the picture.
     pub(super) fn annotations(&self, places: &Places<'_>) -> Result<AnnotationPlan, SceneFileError> {
         let text = self.text.map(|Table(text)| text).unwrap_or_default();
@@ -286,23 +278,6 @@ impl FilmTable {
         let film = film.map_err(|error| places.span("film.width").error(error))?;
         Ok(film.with_y_axis(self.y))
     }
-}
-
-/// A table of the list `spheres`.
-#[derive(Clone, Debug, Deserialize, Serialize)]
-#[serde(deny_unknown_fields)]
-pub(crate) struct SphereTable {
-    /// The centre in scene units.
-    center: List<3>,
-    /// The radius in scene units, greater than 0.
-    radius: f64,
-    /// The colour; a light grey by default.
-    #[serde(default = "default_color")]
-    color: LinearRgb,
-    /// The name of a material.
-    material: Option<String>,
-    /// Opacity, from 0 (clear) to 1 (opaque).
-    opacity: Option<f64>,
 }
 
 /// The table `[output]`.

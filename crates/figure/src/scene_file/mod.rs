@@ -1,4 +1,4 @@
-//! Reads scene files: TOML text that describes the film, the camera, the render settings and the spheres. This module
+//! Reads scene files: TOML text that describes the film, the camera, the render settings and the shapes. This module
 //! does not access the file system.
 //!
 //! The commented files `examples/*.toml` show every table and key.
@@ -11,16 +11,19 @@ mod lighting;
 mod mapping;
 mod materials;
 mod settled;
+mod shapes;
 pub(crate) mod span;
 
 pub use camera_path::parse_camera_path;
 pub(crate) use data::{BondsTable, BoxTable};
 pub use data::{Data, Element};
 pub use data_scene::{DataError, DataScene};
+pub(crate) use document::Document;
 pub use document::KEYS_OF_DATA;
-pub(crate) use document::{Document, SphereTable};
 pub use lighting::IntegratorKind;
 pub use settled::Settled;
+pub(crate) use shapes::{ConeTable, CylinderTable, SphereTable};
+pub use shapes::{OwnCone, OwnShapes};
 pub use span::{DEFAULT_COLOR, SceneFileError};
 
 use crate::annotate::AnnotationPlan;
@@ -60,6 +63,7 @@ pub struct SceneFile {
     camera: WithSpan<CameraParameters>,
     camera_path: Option<CameraPath>,
     spheres: Vec<WithSpan<Sphere>>,
+    cones: Vec<WithSpan<OwnCone>>,
     asked: IntegratorChoice,
     /// The positions of the ground and of the image of the sky.
     spans: [Span; 2],
@@ -87,12 +91,12 @@ impl SceneFile {
         let places = &layers.places;
         materials::check(&document.materials, places)?;
         let data = document.data(&layers)?;
-        let spheres = document.own_spheres(places)?;
+        let (spheres, cones) = (document.own_spheres(places)?, document.own_cones(places)?);
         let has_materials = document.material.is_some()
             || document.opacity.is_some()
             || document.opacity_by.is_some()
             || document.emission_by.is_some()
-            || has_surface(&spheres, data.as_ref());
+            || has_surface(&spheres, &cones, data.as_ref());
         let path = document.camera_path.as_ref();
         let path = path.map(|Table(path)| path.path("camera_path.", places));
         Ok(Self {
@@ -107,6 +111,7 @@ impl SceneFile {
             camera: WithSpan { value: document.camera, span: places.span("camera") },
             camera_path: path.transpose()?,
             spheres,
+            cones,
             spans: ["ground", "sky.image"].map(|key| places.span(key)),
             flags: layers.flags(),
             kept: layers.kept,
@@ -114,27 +119,32 @@ impl SceneFile {
         })
     }
 
-    /// Makes the scene of the file's own spheres. [`Data::scene`] makes that of its data.
+    /// Makes the scene of the file's own shapes. [`Data::scene`] makes that of its data.
     ///
     /// # Errors
-    /// Names the first sphere that is out of range, with its position.
+    /// Names the first shape that is out of range, with its position.
     pub fn scene(&self) -> Result<Scene, SceneFileError> {
-        let own: Vec<Sphere> = self.spheres().collect();
-        Scene::new(&own).map_err(|error| self.at_sphere(&error))
+        self.shapes().scene().map_err(|error| self.at_shape(&error))
     }
 
-    /// Adds the position of a sphere, or of the key `data`, to an error of a scene: first the file's own spheres, then
-    /// those of its data.
+    /// Adds the position of a shape, or of the key `data`, to an error of a scene: first the file's own shapes of a
+    /// kind, then those of its data.
     #[must_use]
-    pub fn at_sphere(&self, error: &SceneError) -> SceneFileError {
-        let &SceneError::Sphere { index, error: ref fault } = error else {
-            return Span::START.error(error);
+    pub fn at_shape(&self, error: &SceneError) -> SceneFileError {
+        let (index, own, what, fault) = match error {
+            SceneError::Sphere { index, error } => {
+                (*index, self.spheres.iter().map(|sphere| sphere.span).collect::<Vec<_>>(), "sphere", error.to_string())
+            }
+            SceneError::Cone { index, error } => {
+                (*index, self.cones.iter().map(|cone| cone.span).collect(), "bond or edge", error.to_string())
+            }
+            _ => return Span::START.error(error),
         };
-        match (self.spheres.get(index), &self.data) {
-            (Some(sphere), _) => sphere.span.error(error),
+        match (own.get(index), &self.data) {
+            (Some(span), _) => span.error(error),
             (None, Some(data)) => {
-                let in_data = index - self.spheres.len();
-                data.span.error(format!("sphere {in_data} of {}: {fault}", data.value.file))
+                let in_data = index - own.len();
+                data.span.error(format!("{what} {in_data} of {}: {fault}", data.value.file))
             }
             (None, None) => Span::START.error(error),
         }
@@ -184,6 +194,12 @@ impl SceneFile {
         self.spheres.iter().map(|sphere| sphere.value)
     }
 
+    /// Returns the shapes that are in the file itself.
+    #[must_use]
+    pub fn shapes(&self) -> OwnShapes {
+        OwnShapes { spheres: self.spheres().collect(), cones: self.cones.iter().map(|cone| cone.value).collect() }
+    }
+
     /// Returns the reference to a data file, if the scene file has one.
     #[must_use]
     pub fn data(&self) -> Option<&Data> {
@@ -208,14 +224,15 @@ impl SceneFile {
     }
 }
 
-/// Whether the surface of any sphere is not matt and opaque.
-fn has_surface(spheres: &[WithSpan<Sphere>], data: Option<&WithSpan<Data>>) -> bool {
+/// Whether the surface of any shape is not matt and opaque.
+fn has_surface(spheres: &[WithSpan<Sphere>], cones: &[WithSpan<OwnCone>], data: Option<&WithSpan<Data>>) -> bool {
     let matt = pinhole::scene::material::SurfaceProperties::default();
     let of_data = data.iter().flat_map(|data| {
         let elements = data.value.elements.iter().map(|element| element.surface);
         elements.chain([data.value.surface])
     });
-    spheres.iter().map(|sphere| sphere.value.surface).chain(of_data).any(|surface| surface != matt)
+    let own = spheres.iter().map(|sphere| sphere.value.surface);
+    own.chain(cones.iter().map(|cone| cone.value.surface)).chain(of_data).any(|surface| surface != matt)
 }
 
 impl SceneFile {
@@ -314,17 +331,18 @@ impl SceneFile {
         self.document.sampling.unwrap_or_default().0
     }
 
-    /// Refuses spheres of this file that would reflect more light than they receive, or emit too much.
+    /// Refuses shapes of this file that would reflect more light than they receive, or emit too much.
     fn check_colors(&self) -> Result<(), SceneFileError> {
-        for (index, sphere) in self.spheres.iter().enumerate() {
-            let (color, surface) = (sphere.value.color, sphere.value.surface);
-            let (rgb, what) = (color.to_array(), format!("sphere {index}"));
+        let spheres = self.spheres.iter().map(|s| ("sphere", s.span, s.value.color, s.value.surface));
+        let cones = self.cones.iter().map(|c| ("cone", c.span, c.value.color, c.value.surface));
+        for (index, (kind, span, color, surface)) in spheres.enumerate().chain(cones.enumerate()) {
+            let (rgb, what) = (color.to_array(), format!("{kind} {index}"));
             match surface.material {
                 Material::Emissive { strength } => {
-                    scaled(color, strength.into(), &what).map_err(|error| sphere.span.error(error))?;
+                    scaled(color, strength.into(), &what).map_err(|error| span.error(error))?;
                 }
                 _ if rgb.iter().any(|c| *c > 1.0) => {
-                    return Err(sphere.span.error(SettingsError::Albedo { what, rgb }));
+                    return Err(span.error(SettingsError::Albedo { what, rgb }));
                 }
                 _ => {}
             }

@@ -7,7 +7,7 @@ use serde::de::value::{MapAccessDeserializer, MapDeserializer, SeqDeserializer};
 use serde::de::{DeserializeOwned, Deserializer, Error, IntoDeserializer, Visitor};
 use serde::forward_to_deserialize_any;
 
-use crate::scene_file::{BondsTable, BoxTable, Document, SphereTable};
+use crate::scene_file::{BondsTable, BoxTable, ConeTable, CylinderTable, Document, SphereTable};
 
 /// A name that no key and no kind has.
 const UNKNOWN: &str = "\0";
@@ -20,6 +20,8 @@ pub fn keys_of(table: &str) -> Vec<&'static str> {
         "box" => keys_in::<BoxTable>(""),
         "bonds" => keys_in::<BondsTable>(""),
         "spheres" => keys_in::<SphereTable>(""),
+        "cylinders" => keys_in::<CylinderTable>(""),
+        "cones" => keys_in::<ConeTable>(""),
         // A material is part of the surface properties, which have this key, too.
         table if table.starts_with("materials.") => [keys_in::<Document>(table), vec!["opacity"]].concat(),
         table => keys_in::<Document>(table),

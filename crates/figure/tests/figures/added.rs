@@ -1,11 +1,13 @@
-//! Bonds and the edges of cells: which of them exist, the positions of their spheres, and their appearance.
+//! Bonds and the edges of cells: which of them exist, where they are, and their appearance.
 
 use pinhole::glam::DVec3;
+use pinhole::scene::ConeInFrame;
+use pinhole::scene::material::SurfaceProperties;
 use pinhole::{Scene, SphereArray};
 use pinhole_data::added::{Additions, BondLength, Bonds, CellEdges};
 use pinhole_data::load::{self, Dataset, Options};
 use pinhole_figure::color_by::{ColorBy, Mapping};
-use pinhole_figure::scene_file::{Data, DataError, DataScene, SceneFile};
+use pinhole_figure::scene_file::{Data, DataError, DataScene, OwnShapes, SceneFile};
 
 fn read(text: &str) -> Dataset {
     load::from_bytes(text.as_bytes(), "a.xyz", &Options::default()).unwrap()
@@ -19,7 +21,7 @@ fn bonds() -> Additions {
 }
 
 fn made(loaded: Dataset, additions: &Additions) -> Result<DataScene, DataError> {
-    Data { additions: additions.clone(), ..Data::of_file("a.xyz") }.scene(loaded, &[])
+    Data { additions: additions.clone(), ..Data::of_file("a.xyz") }.scene(loaded, &OwnShapes::default())
 }
 
 fn scene(loaded: Dataset, additions: &Additions) -> (Scene, usize) {
@@ -31,35 +33,65 @@ fn center(sphere: &[f32; 4]) -> DVec3 {
     DVec3::new(sphere[0].into(), sphere[1].into(), sphere[2].into())
 }
 
+/// The ends of a cone, and its radii.
+fn ends(cone: &ConeInFrame) -> ([DVec3; 2], [f32; 2]) {
+    let place = |[x, y, z]: [f32; 3]| DVec3::new(x.into(), y.into(), z.into());
+    ([cone.start, cone.end].map(place), [cone.first_radius, cone.second_radius])
+}
+
 #[test]
 fn oxygen_is_bonded_to_its_hydrogens_and_hydrogens_are_not() {
     let (scene, bonds) = scene(read(WATER), &bonds());
-    assert_eq!(bonds, 4);
-    let (atoms, sticks) = scene.spheres().split_at(6);
+    assert_eq!((bonds, scene.len(), scene.added()), (4, 6, 0));
     // Atoms have 0.25 of Alvarez' van der Waals radii.
+    let atoms = scene.spheres();
     assert!((atoms[0][3] - 0.375).abs() < 1e-6 && (atoms[1][3] - 0.3).abs() < 1e-6);
-    assert!(!sticks.is_empty());
+    // Each half of a bond has the colour of its atom.
+    assert_eq!(scene.cones().len(), 8);
     let red = scene.color(0);
-    for (index, stick) in (6_u32..).zip(sticks) {
-        let near = |atom: &&[f32; 4]| center(atom).distance(center(stick));
-        let nearest = atoms.iter().min_by(|a, b| near(a).total_cmp(&near(b))).unwrap();
-        let atom = atoms.iter().position(|atom| atom == nearest).unwrap() as u32;
-        // Each half of a bond has the colour of its atom.
-        assert_eq!(scene.color(index), scene.color(atom), "{stick:?}");
-        assert_eq!(scene.color(index) == red, atom == 0 || atom == 4);
-        assert!((stick[3] - 0.45 * 0.3).abs() < 1e-6);
+    for (index, stick) in (6_u32..).zip(scene.cones()) {
+        let ([start, end], radii) = ends(stick);
+        let near = |atom: &[f32; 4]| center(atom).distance(0.5 * (start + end));
+        let nearest = (0..6).min_by(|a, b| near(&atoms[*a as usize]).total_cmp(&near(&atoms[*b as usize]))).unwrap();
+        assert_eq!(scene.color(index), scene.color(nearest), "{stick:?}");
+        assert_eq!(scene.color(index) == red, nearest == 0 || nearest == 4);
+        assert!(radii.iter().all(|radius| (radius - 0.45 * 0.3).abs() < 1e-6));
     }
-    // Every bond is a row of spheres without gaps. Steps are at most 0.4 of the radius, also across the middle.
-    let [from, to] = [center(&atoms[0]), center(&atoms[1])];
-    let on_bond = |sphere: &&[f32; 4]| (center(sphere).y).abs() < 1e-6 && sphere[0] < 1.0;
-    let mut along: Vec<f64> = sticks.iter().filter(on_bond).map(|s| s[0].into()).collect();
-    along.sort_by(f64::total_cmp);
+    // The halves meet in the middle. Each begins in its ball, deeper than where it leaves it.
+    let [([start, middle], _), ([other, end], _)] = [0, 1].map(|index| ends(&scene.cones()[index]));
+    assert_eq!((middle, other), (0.5 * (center(&atoms[0]) + center(&atoms[1])).as_vec3().as_dvec3(), middle));
     let radius = 0.45 * 0.3;
-    assert_eq!(along.len(), 7);
-    assert!(along.windows(2).all(|pair| pair[1] - pair[0] <= 0.4 * radius + 1e-6), "{along:?}");
-    let reach = |ball: f64| (ball * ball - radius * radius).sqrt();
-    assert!(along[0] - from.x <= reach(0.375) + 0.2 * radius + 1e-6);
-    assert!(to.x - along[along.len() - 1] <= reach(0.3) + 0.2 * radius + 1e-6);
+    for (at, ball, radius_of_ball) in [(start, &atoms[0], 0.375), (end, &atoms[1], 0.3_f64)] {
+        let depth = (radius_of_ball * radius_of_ball - radius * radius).sqrt() - at.distance(center(ball));
+        assert!((depth - radius).abs() < 1e-5, "{depth}");
+    }
+}
+
+#[test]
+fn a_bond_of_two_like_atoms_is_one_cylinder() {
+    let text = "3\n\nC 0 0 0\nC 1.5 0 0\nO 1.5 1.4 0\n";
+    let (plain, bonds) = scene(read(text), &self::bonds());
+    assert_eq!((bonds, plain.cones().len(), plain.shape_count()), (2, 3, 6));
+    assert_eq!((plain.color(3), plain.color(5)), (plain.color(0), plain.color(2)));
+    let mut loaded = read(text);
+    loaded.opacities = Some(vec![1.0, 0.2, 1.0]);
+    assert_eq!(scene(loaded, &self::bonds()).0.cones().len(), 4);
+    // Atoms in one place have no bond.
+    let (same, bonds) = scene(read("2\n\nC 0 0 0\nC 0 0 0\n"), &self::bonds());
+    assert_eq!((bonds, same.cones().len()), (0, 0));
+}
+
+#[test]
+fn bonds_of_shining_spheres_do_not_shine() {
+    let data = "data = 'a.xyz'\nbonds = true\n[materials.lamp]\nkind = 'emissive'\nstrength = 3\n\
+                [elements.O]\nmaterial = 'lamp'\nopacity = 0.5\n";
+    let file = SceneFile::parse(data).unwrap();
+    let made = file.data().unwrap().scene(read(WATER), &OwnShapes::default()).unwrap();
+    assert!(made.notes.iter().any(|note| note == "bonds of spheres that emit light are drawn without light"));
+    let scene = made.scene;
+    assert_eq!(scene.color(6), scene.color(0));
+    let matt = SurfaceProperties { opacity: 0.5, ..SurfaceProperties::default() };
+    assert_eq!([scene.surface(6), scene.surface(7)], [matt, scene.surface(1)]);
 }
 
 #[test]
@@ -73,7 +105,7 @@ fn the_user_chooses_lengths_and_radii() {
     let (kept, _) = scene(read(WATER), &Additions { keeps_radii: true, ..bonds() });
     assert!((kept.spheres()[0][3] - 1.5).abs() < 1e-6);
     // Sticks inside the atoms' spheres are not drawn.
-    assert_eq!(kept.added(), 0);
+    assert_eq!(kept.cones(), []);
     for bad in [BondLength::Below(f64::NAN), BondLength::Covalent(0.0), BondLength::Below(-1.0)] {
         let Err(DataError::Add(error)) = made(read(WATER), &of(bad)) else { panic!("{bad:?}") };
         assert!(error.to_string().ends_with("it must be finite and greater than 0"), "{error}");
@@ -90,8 +122,8 @@ fn colours_by_data_and_opacities_reach_the_sticks() {
     let additions = Additions { cell: Some(CellEdges::default()), ..bonds() };
     loaded.cell = Some([[4.0, 0.0, 0.0], [0.0, 4.0, 0.0], [0.0, 0.0, 4.0]]);
     let data = Data { mapping, ..Data::of_file("a.xyz") };
-    let plain = data.scene(loaded.clone(), &[]).unwrap();
-    let made = Data { additions, ..data }.scene(loaded, &[]).unwrap();
+    let plain = data.scene(loaded.clone(), &OwnShapes::default()).unwrap();
+    let made = Data { additions, ..data }.scene(loaded, &OwnShapes::default()).unwrap();
     // The range, the legend and the appearance of the atoms are the same as without additions.
     assert_eq!(made.color_key, plain.color_key);
     assert_eq!(made.notes[..plain.notes.len()], plain.notes);
@@ -99,13 +131,13 @@ fn colours_by_data_and_opacities_reach_the_sticks() {
     for id in 0..6 {
         assert_eq!((scene.color(id), scene.surface(id)), (plain.color(id), plain.surface(id)));
     }
-    let of_atom = |id: &u32| scene.color(*id) == scene.color(1);
-    let sticks: Vec<u32> = (6..scene.len() as u32).filter(of_atom).collect();
-    assert!(!sticks.is_empty());
+    assert_eq!((scene.len(), scene.added()), (14, 8));
+    let sticks: Vec<u32> = (14..scene.shape_count() as u32).filter(|id| scene.color(*id) == scene.color(1)).collect();
+    assert_eq!(sticks.len(), 1);
     assert!(sticks.iter().all(|id| scene.surface(*id) == scene.surface(1)));
     assert!((scene.surface(1).opacity - 0.2).abs() < 1e-6);
-    let last = scene.len() as u32 - 1;
-    assert_eq!((scene.surface(last).opacity, scene.added()), (1.0, scene.len() - 6));
+    let last = scene.shape_count() as u32 - 1;
+    assert_eq!((scene.surface(last).opacity, scene.color(last)), (1.0, scene.color(13)));
     assert!(made.notes[made.notes.len() - 1].contains("borders of the periodic cell"));
 }
 
@@ -116,32 +148,29 @@ fn edges_of_a_tilted_cell_start_at_its_origin() {
     assert_eq!(loaded.cell_origin, [10.0, 20.0, 30.0]);
     let edges = Additions { cell: Some(CellEdges::default()), ..Additions::default() };
     let (scene, bonds) = scene(loaded, &edges);
-    assert_eq!((bonds, scene.added()), (0, scene.len() - 1));
+    assert_eq!((bonds, scene.len(), scene.added(), scene.cones().len()), (0, 9, 8, 12));
     let origin = DVec3::new(10.0, 20.0, 30.0);
     let [a, b, c] = [[4.0, 0.0, 0.0], [1.0, 3.0, 0.0], [0.0, 1.0, 2.0]].map(DVec3::from);
     let radius = (a + b + c).length() / 600.0;
-    let at = |sphere: &[f32; 4]| scene.origin() + center(sphere);
-    // Every sphere lies on an edge. Two of its fractions are 0 or 1, and the third is between them.
+    // The spheres are the eight corners, and each edge joins two corners that differ along one axis.
     let inverse = pinhole::glam::DMat3::from_cols(a, b, c).inverse();
-    let mut on_edge = [0; 12];
-    for sphere in &scene.spheres()[1..] {
-        assert!((f64::from(sphere[3]) - radius).abs() < 1e-6);
-        let fractions = (inverse * (at(sphere) - origin)).to_array();
-        let is_end = |f: &f64| f.abs() < 1e-5 || (f - 1.0).abs() < 1e-5;
-        assert!(fractions.iter().all(|f| (-1e-5..1.0 + 1e-5).contains(f)), "{fractions:?}");
-        let ends = fractions.iter().filter(|f| is_end(f)).count();
-        assert!(ends >= 2, "{fractions:?}");
-        if ends == 2 {
-            let axis = fractions.iter().position(|f| !is_end(f)).unwrap();
-            let [one, other] = [(axis + 1) % 3, (axis + 2) % 3].map(|i| usize::from(fractions[i] > 0.5));
-            on_edge[4 * axis + 2 * one + other] += 1;
-        }
+    let corner = |place: DVec3| {
+        let fractions = inverse * (scene.origin() + place - origin);
+        assert!(fractions.distance(fractions.round()) < 1e-5, "{fractions}");
+        fractions.round().to_array().map(|f| f as i32)
+    };
+    let mut corners: Vec<_> = scene.spheres()[1..].iter().map(|sphere| corner(center(sphere))).collect();
+    assert!(scene.spheres()[1..].iter().all(|sphere| (f64::from(sphere[3]) - radius).abs() < 1e-6));
+    corners.sort_unstable();
+    corners.dedup();
+    assert_eq!((corners.len(), corners[0], corners[7]), (8, [0; 3], [1; 3]));
+    let mut edges: Vec<_> = scene.cones().iter().map(|edge| ends(edge).0.map(corner)).collect();
+    edges.sort_unstable();
+    edges.dedup();
+    assert_eq!(edges.len(), 12);
+    for [start, end] in edges {
+        assert_eq!((0..3).map(|axis| (end[axis] - start[axis]).abs()).sum::<i32>(), 1);
     }
-    // All twelve edges have as many spheres as their length needs, and the corners have eight.
-    let [of_a, of_b, of_c] = [a, b, c].map(|edge| (edge.length() / (0.6 * radius)).ceil() as usize);
-    let expected = [[of_a; 4], [of_b; 4], [of_c; 4]].concat();
-    assert_eq!(on_edge.to_vec(), expected);
-    assert_eq!(scene.added(), expected.iter().sum::<usize>() + 8);
     // The mean radius, which a style uses, is that of the data.
     assert!((scene.subject().mean_radius().unwrap() - 1.77).abs() < 1e-6);
     let bounds = scene.bounds().unwrap();
@@ -169,7 +198,9 @@ fn what_is_missing_is_an_error() {
     assert!(error(crowd, &bonds()).contains("choose a smaller factor or length"));
     let thin = Additions { bonds: Some(Bonds::new(BondLength::Below(1e5))), ..Additions::default() };
     let far = Dataset::new(SphereArray::F64(vec![[0.0, 0.0, 0.0, 1e-3], [9e4, 0.0, 0.0, 1e-3]]));
-    assert!(error(far, &thin).contains("choose larger radii"));
+    let error = error(far, &thin);
+    assert!(error.starts_with("the bond between the spheres 0 and 1 cannot be drawn: its length, "), "{error}");
+    assert!(error.contains("choose larger radii"));
 }
 
 #[test]
@@ -179,7 +210,7 @@ fn scene_files_select_and_add() {
     let file = SceneFile::parse(text).unwrap();
     let mut loaded = read(WATER);
     loaded.cell = Some([[4.0, 0.0, 0.0], [0.0, 4.0, 0.0], [0.0, 0.0, 4.0]]);
-    let made = file.data().unwrap().scene(loaded, &[]).unwrap();
+    let made = file.data().unwrap().scene(loaded, &OwnShapes::default()).unwrap();
     assert_eq!(made.kept.as_ref().map(|kept| (kept.kept, kept.of)), Some((3, 6)));
     assert_eq!(made.bonds, Some(2));
     let spheres = made.scene.spheres();

@@ -7,7 +7,7 @@ use pinhole_data::select::{SelectError, Selection};
 use pinhole_figure::color_by::{
     ColorBy, ColorKey, ColumnError, EmissionBy, JoinedKeys, KeyKind, MISSING, Mapping, RadiusBy,
 };
-use pinhole_figure::scene_file::{Data, DataError, DataScene};
+use pinhole_figure::scene_file::{Data, DataError, DataScene, OwnShapes};
 
 fn spheres(count: usize) -> SphereArray {
     SphereArray::F64((0..count).map(|i| [i as f64, 10.0 + i as f64, 0.5, 1.0 + i as f64]).collect())
@@ -149,7 +149,7 @@ fn spheres_that_are_left_out_do_not_count() {
     let color = |by: ColorBy| {
         let mapping = Mapping { color: Some(by), ..Mapping::default() };
         let leave_out = vec![("chain".to_owned(), vec!["C".to_owned(), String::new()])];
-        Data { mapping, leave_out, ..Data::of_file("a.xyz") }.scene(loaded.clone(), &[]).unwrap()
+        Data { mapping, leave_out, ..Data::of_file("a.xyz") }.scene(loaded.clone(), &OwnShapes::default()).unwrap()
     };
     let made = color(gray("t"));
     assert_eq!((made.scene.len(), made.scene.color(1)), (2, LinearRgb::WHITE));
@@ -279,7 +279,7 @@ fn columns_are_found_by_name() {
 fn mapped(columns: Vec<Column>, count: usize, mapping: Mapping) -> Result<DataScene, DataError> {
     let mut loaded = Dataset::new(spheres(count));
     loaded.columns = columns;
-    Data { mapping, ..Data::of_file("a.xyz") }.scene(loaded, &[])
+    Data { mapping, ..Data::of_file("a.xyz") }.scene(loaded, &OwnShapes::default())
 }
 
 #[test]

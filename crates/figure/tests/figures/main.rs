@@ -15,6 +15,7 @@ mod added;
 mod annotate;
 mod camera_path;
 mod color_by;
+mod cones;
 mod environment;
 mod pictures;
 mod scene_file;

@@ -88,7 +88,7 @@ fn data_comes_behind_the_files_own_spheres() {
     let file = parse("data = 'a.xyz'\nframe = 3\nradius_scale = 0.5\n[[spheres]]\ncenter=[0,0,0]\nradius=1\n");
     let data = file.data().unwrap();
     assert_eq!((data.file.as_str(), data.frame, data.radius_scale), ("a.xyz", Some(3), 0.5));
-    let own: Vec<_> = file.spheres().collect();
+    let own = file.shapes();
     let scene = |radii: &[f64]| {
         let spheres = radii.iter().map(|radius| [5.0, 0.0, 0.0, *radius]).collect();
         data.scene(Dataset::new(SphereArray::F64(spheres)), &own).map(|made| made.scene)
@@ -97,7 +97,7 @@ fn data_comes_behind_the_files_own_spheres() {
     assert_eq!(made.spheres(), [[0.0, 0.0, 0.0, 1.0], [5.0, 0.0, 0.0, 2.0]]);
 
     let Err(DataError::Scene(error)) = scene(&[4.0, -4.0]) else { panic!("-4 is no radius") };
-    let error = file.at_sphere(&error);
+    let error = file.at_shape(&error);
     assert_eq!((error.line, error.column), (1, 8));
     assert!(error.message.starts_with("sphere 1 of a.xyz: its radius is -2.0"), "{error}");
 }

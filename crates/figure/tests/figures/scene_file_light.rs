@@ -7,7 +7,7 @@ use pinhole::light::{Light, LightFrame, LightKind, SkyLight};
 use pinhole::render::{Integrator, LightSampling, RenderSettings, Sampling, Studio};
 use pinhole::{Material, PixelFilter, Scene, SphereArray, SurfaceProperties};
 use pinhole_data::load::{Column, ColumnValues, Dataset, Labels};
-use pinhole_figure::scene_file::{DataScene, IntegratorKind, SceneFile};
+use pinhole_figure::scene_file::{DataScene, IntegratorKind, OwnShapes, SceneFile};
 
 use crate::scene_file::parse;
 
@@ -148,7 +148,7 @@ fn molecule() -> Dataset {
 fn elements_are_named_by_columns_and_some_are_left_out() {
     let made = |text: &str| {
         let file = parse(&format!("data = 'a.pdb'\n{text}"));
-        file.data().unwrap().scene(molecule(), &[])
+        file.data().unwrap().scene(molecule(), &OwnShapes::default())
     };
     let radii = |text: &str| {
         let DataScene { scene, notes, .. } = made(text).unwrap();
@@ -177,7 +177,7 @@ fn elements_are_named_by_columns_and_some_are_left_out() {
     }
     let plain = parse("data = 'a.npy'\nleave_out = { chain = ['A'] }\n");
     let empty = Dataset::new(SphereArray::F32(Vec::new()));
-    let refused = plain.data().unwrap().scene(empty, &[]).unwrap_err();
+    let refused = plain.data().unwrap().scene(empty, &OwnShapes::default()).unwrap_err();
     assert_eq!(
         refused.to_string(),
         "`leave_out` applies only to data with text, such as the names of atoms, and a.npy has none; remove it"
@@ -192,7 +192,7 @@ fn data_gets_common_properties_or_those_of_its_species() {
          [elements.O]\nradius = 3\ncolor = 'red'\n[elements.C1]\nmaterial = 'glass'\n[elements.X]\n",
     );
     let data = file.data().unwrap();
-    let DataScene { scene, notes, .. } = data.scene(molecule(), &[]).unwrap();
+    let DataScene { scene, notes, .. } = data.scene(molecule(), &OwnShapes::default()).unwrap();
     assert_eq!(notes, ["`[elements.X]`: no atom of a.xyz has this name; check its spelling or remove the table"]);
     let metal = SurfaceProperties { material: Material::Conductor { roughness: 0.2 }, opacity: 0.5 };
     let radii: Vec<f32> = scene.spheres().iter().map(|atom| atom[3]).collect();
@@ -209,11 +209,11 @@ fn arrays_get_the_common_surface_properties() {
     for own in ["", SPHERE] {
         let file = parse(&format!("data = 'a.npy'\nopacity = 0.5\n{own}"));
         let loaded = Dataset::new(SphereArray::F32(vec![[0.0, 0.0, 0.0, 1.0]; 2]));
-        let own: Vec<_> = file.spheres().collect();
+        let own = file.shapes();
         let scene = file.data().unwrap().scene(loaded, &own).unwrap().scene;
         let last = scene.len() as u32 - 1;
         assert_eq!(scene.surface(last).opacity, 0.5);
-        assert_eq!(scene.surface(0).opacity, if own.is_empty() { 0.5 } else { 1.0 });
+        assert_eq!(scene.surface(0).opacity, if own.spheres.is_empty() { 0.5 } else { 1.0 });
     }
 }
 

@@ -13,6 +13,7 @@ use pinhole_figure::settings::{
 };
 
 const FILES: &str = "crates/figure/src/scene_file/document.rs";
+const SHAPES: &str = "crates/figure/src/scene_file/shapes.rs";
 const DATA: &str = "crates/figure/src/scene_file/data.rs";
 const MAPPING: &str = "crates/figure/src/color_by/mapping.rs";
 const PLAN: &str = "crates/figure/src/annotate/plan.rs";
@@ -24,7 +25,7 @@ const MATERIAL: &str = "src/scene/material.rs";
 const CAMERA_PATH: &str = "crates/figure/src/scene_file/camera_path.rs";
 
 /// The tables of a scene file, each with the file and the structs that have its keys.
-const TABLES: [(&str, &str, &[&str]); 31] = [
+const TABLES: [(&str, &str, &[&str]); 33] = [
     ("", FILES, &["Document"]),
     ("elements.NAME", DATA, &["ElementTable"]),
     ("box", DATA, &["BoxTable"]),
@@ -33,7 +34,9 @@ const TABLES: [(&str, &str, &[&str]); 31] = [
     ("radius_by", MAPPING, &["RadiusBy"]),
     ("opacity_by", "crates/figure/src/scene_file/mapping.rs", &["ColumnTable"]),
     ("emission_by", MAPPING, &["EmissionBy"]),
-    ("spheres", FILES, &["SphereTable"]),
+    ("spheres", SHAPES, &["SphereTable"]),
+    ("cylinders", SHAPES, &["CylinderTable"]),
+    ("cones", SHAPES, &["ConeTable"]),
     ("film", FILES, &["FilmTable"]),
     ("output", FILES, &["OutputTable"]),
     ("camera.pinhole", CAMERAS, &["PinholeParameters"]),
@@ -121,6 +124,7 @@ fn shown(value: &str) -> &str {
         ("Outline", "table"),
         ("List<3>", "[x, y, z]"),
         ("List<2>", "[x, y]"),
+        ("Pair", "[first, second]"),
         ("Vec<String>", "texts"),
         ("LinearRgb", "colour"),
         ("[u8; 3]", "colour"),
