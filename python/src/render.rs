@@ -68,9 +68,8 @@ impl OnDevice {
         backend: Backend,
         stop: &Stop,
     ) -> Outcome<RenderedImage> {
-        // The CPU follows random rays in less time than a software device.
-        let is_slow = |on: &Arc<OpenDevice>| on.headless.is_slower_than_cpu(scene, look.view().camera, &look.settings);
-        let opened = device::device(backend)?.filter(|opened| backend != Backend::Auto || !is_slow(opened));
+        let reason = |on: &Arc<OpenDevice>| on.headless.reason_for_cpu(scene, look.view().camera, &look.settings);
+        let opened = device::device(backend)?.filter(|opened| backend != Backend::Auto || reason(opened).is_none());
         let Some(opened) = opened else {
             return on_cpu(scene, look, layers, stop);
         };

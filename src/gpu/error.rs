@@ -156,8 +156,8 @@ pub enum GpuError {
     NoOccluders,
     /// Light was requested of a device for a scene with cones or cylinders.
     #[error(
-        "devices do not light scenes with cones or cylinders yet; render with the CPU reference (`--backend cpu`), or \
-         without random light (`--style clear` or `--style flat`)"
+        "devices do not light cylinders and cones yet, such as bonds and the edges of cells; add `--backend cpu`, or leave \
+         out what makes light random (`--style default`)"
     )]
     LitCones,
     /// A live picture was requested of a scene, or with settings, that live pictures do not support.

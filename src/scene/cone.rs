@@ -124,8 +124,10 @@ impl Cone {
 
     /// The cone in a frame. An error if rounding leaves no length.
     pub(super) fn in_frame(&self, origin: DVec3) -> Result<ConeInFrame, ConeError> {
-        let [start, end] = [self.start, self.end].map(|place| (DVec3::from(place) - origin).as_vec3().to_array());
-        if start == end {
+        let [start, end] = [self.start, self.end].map(|place| (DVec3::from(place) - origin).as_vec3());
+        let is_lost = start == end;
+        let [start, end] = [start, end].map(|place| place.to_array());
+        if is_lost {
             return Err(ConeError(format!(
                 "its start and end are both {start:?} after rounding to f32 in the scene's frame, whose origin is {:?}",
                 origin.to_array()

@@ -11,7 +11,7 @@ use crate::input::{Input, Source};
 use crate::render;
 use crate::render::MOST_BY_TILES;
 use crate::render::device::{AdapterReport, WantedAdapter, explained};
-use crate::render::renderer::is_quicker_on_cpu;
+use crate::render::renderer::reason_for_cpu;
 use crate::render::views::views_of;
 use crate::terminal::failure::Failure;
 use crate::terminal::progress::{self, answer};
@@ -127,7 +127,7 @@ pub(crate) fn run(args: &PlanArgs) -> Result<(), Failure> {
         input.scene = Arc::new(bricks.largest_scene(input.color)?);
     }
     let headless = adapter.open_any()?;
-    if args.adapter.first_given(args.accel.accel).is_none() && is_quicker_on_cpu(&headless, &input) {
+    if args.adapter.first_given(args.accel.accel).is_none() && reason_for_cpu(&headless, &input).is_some() {
         let text =
             "this is the plan with --backend gpu; without it, `render` follows random rays on the CPU reference here";
         input.notes.push(text.to_owned());

@@ -150,10 +150,16 @@ impl Headless {
         &self.info
     }
 
-    /// True if the CPU reference follows the random rays of a picture in less time: 0.2 to 0.8 of that of lavapipe.
+    /// Why the CPU reference should follow the random rays of a picture in the place of this device: devices do not light
+    /// cones and cylinders, and software devices are slower; the reference takes 0.2 to 0.8 of the time of lavapipe. `None`
+    /// if it should not.
     #[must_use]
-    pub fn is_slower_than_cpu(&self, scene: &Scene, camera: &dyn Camera, settings: &RenderSettings) -> bool {
-        self.info.device_type == DeviceType::Cpu && settings.is_random(scene, camera)
+    pub fn reason_for_cpu(&self, scene: &Scene, camera: &dyn Camera, settings: &RenderSettings) -> Option<String> {
+        match settings.is_random(scene, camera) {
+            true if !scene.cones().is_empty() => Some("devices do not light cylinders and cones yet".to_owned()),
+            true if self.info.device_type == DeviceType::Cpu => Some(format!("{} is slower", self.info.name)),
+            _ => None,
+        }
     }
 
     /// Returns the device, for callers that record their own commands.

@@ -91,7 +91,8 @@ impl SceneFile {
         let places = &layers.places;
         materials::check(&document.materials, places)?;
         let data = document.data(&layers)?;
-        let (spheres, cones) = (document.own_spheres(places)?, document.own_cones(places)?);
+        let spheres = shapes::spheres(&document.spheres, &document.materials, places)?;
+        let cones = shapes::cones((&document.cylinders, &document.cones), &document.materials, places)?;
         let has_materials = document.material.is_some()
             || document.opacity.is_some()
             || document.opacity_by.is_some()

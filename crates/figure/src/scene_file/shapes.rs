@@ -3,8 +3,7 @@
 use serde::{Deserialize, Serialize};
 use toml::Spanned;
 
-use super::document::Document;
-use super::materials::over;
+use super::materials::{Materials, over};
 use super::span::{SceneFileError, WithSpan, default_color};
 use crate::settings::places::Places;
 use pinhole::image::color::LinearRgb;
@@ -141,51 +140,57 @@ pub(crate) struct ConeTable {
 
 type Pair = List<2>;
 
-impl Document {
-    /// The spheres of the file itself. A scene checks them.
-    pub(super) fn own_spheres(&self, places: &Places<'_>) -> Result<Vec<WithSpan<Sphere>>, SceneFileError> {
-        let sphere = |(index, table): (usize, &Spanned<Table<SphereTable>>)| {
-            let Table(SphereTable { center, radius, color, material, opacity }) = table.get_ref();
-            let of = |error| places.refused(&format!("spheres.{index}"), error);
-            let base = SurfaceProperties::default();
-            let surface = over(&self.materials, base, material.as_deref(), *opacity).map_err(of)?;
-            let mut value = Sphere::new(center.0, *radius, *color);
-            value.surface = surface;
-            Ok(WithSpan { value, span: places.lines.span(table.span().start) })
-        };
-        self.spheres.iter().enumerate().map(sphere).collect()
-    }
-
-    /// The cylinders of the file itself, and then its cones.
-    pub(super) fn own_cones(&self, places: &Places<'_>) -> Result<Vec<WithSpan<OwnCone>>, SceneFileError> {
-        let read = |[list, what]: [&str; 2], index: usize, start: usize, cone: OwnCone, surface: Surface<'_>| {
-            let base = SurfaceProperties::default();
-            let surface = over(&self.materials, base, surface.0, surface.1)
-                .map_err(|error| places.refused(&format!("{list}.{index}"), error))?;
-            let span = places.lines.span(start);
-            cone.cone.check().map_err(|error| span.error(format!("{what} {index}: {error}")))?;
-            if matches!(surface.material, Material::Emissive { .. }) {
-                return Err(span.error(format!(
-                    "{what} {index}: it has an emissive material, but only spheres emit light; name another material"
-                )));
-            }
-            Ok(WithSpan { value: OwnCone { surface, ..cone }, span })
-        };
-        let new = |cone: Cone, color| OwnCone { cone, color, surface: SurfaceProperties::default() };
-        let cylinder = |(index, table): (usize, &Spanned<Table<CylinderTable>>)| {
-            let Table(CylinderTable { start, end, radius, caps, color, material, opacity }) = table.get_ref();
-            let cone = new(Cone::cylinder(start.0, end.0, *radius).with_caps(*caps), *color);
-            read(["cylinders", "cylinder"], index, table.span().start, cone, (material.as_deref(), *opacity))
-        };
-        let cone = |(index, table): (usize, &Spanned<Table<ConeTable>>)| {
-            let Table(ConeTable { start, end, radii, caps, color, material, opacity }) = table.get_ref();
-            let cone = new(Cone::new(start.0, end.0, radii.0).with_caps(*caps), *color);
-            read(["cones", "cone"], index, table.span().start, cone, (material.as_deref(), *opacity))
-        };
-        let cylinders = self.cylinders.iter().enumerate().map(cylinder);
-        cylinders.chain(self.cones.iter().enumerate().map(cone)).collect()
-    }
-}
-
 /// The keys `material` and `opacity` of a table.
 type Surface<'a> = (Option<&'a str>, Option<f64>);
+
+/// The tables of a list.
+type Tables<T> = [Spanned<Table<T>>];
+
+/// Reads the list `spheres`. A scene checks the spheres.
+pub(super) fn spheres(
+    tables: &Tables<SphereTable>,
+    materials: &Materials,
+    places: &Places<'_>,
+) -> Result<Vec<WithSpan<Sphere>>, SceneFileError> {
+    let sphere = |(index, table): (usize, &Spanned<Table<SphereTable>>)| {
+        let Table(SphereTable { center, radius, color, material, opacity }) = table.get_ref();
+        let of = |error| places.refused(&format!("spheres.{index}"), error);
+        let base = SurfaceProperties::default();
+        let surface = over(materials, base, material.as_deref(), *opacity).map_err(of)?;
+        let mut value = Sphere::new(center.0, *radius, *color);
+        value.surface = surface;
+        Ok(WithSpan { value, span: places.lines.span(table.span().start) })
+    };
+    tables.iter().enumerate().map(sphere).collect()
+}
+
+/// Reads the list `cylinders`, and then the list `cones`.
+pub(super) fn cones(
+    (cylinders, cones): (&Tables<CylinderTable>, &Tables<ConeTable>),
+    materials: &Materials,
+    places: &Places<'_>,
+) -> Result<Vec<WithSpan<OwnCone>>, SceneFileError> {
+    let read = |[list, what]: [&str; 2], index: usize, start: usize, cone: Cone, color, surface: Surface<'_>| {
+        let surface = over(materials, SurfaceProperties::default(), surface.0, surface.1)
+            .map_err(|error| places.refused(&format!("{list}.{index}"), error))?;
+        let span = places.lines.span(start);
+        cone.check().map_err(|error| span.error(format!("{what} {index}: {error}")))?;
+        if matches!(surface.material, Material::Emissive { .. }) {
+            return Err(span.error(format!(
+                "{what} {index}: it has an emissive material, but only spheres emit light; name another material"
+            )));
+        }
+        Ok(WithSpan { value: OwnCone { cone, color, surface }, span })
+    };
+    let cylinder = |(index, table): (usize, &Spanned<Table<CylinderTable>>)| {
+        let Table(CylinderTable { start, end, radius, caps, color, material, opacity }) = table.get_ref();
+        let cone = Cone::cylinder(start.0, end.0, *radius).with_caps(*caps);
+        read(["cylinders", "cylinder"], index, table.span().start, cone, *color, (material.as_deref(), *opacity))
+    };
+    let cone = |(index, table): (usize, &Spanned<Table<ConeTable>>)| {
+        let Table(ConeTable { start, end, radii, caps, color, material, opacity }) = table.get_ref();
+        let cone = Cone::new(start.0, end.0, radii.0).with_caps(*caps);
+        read(["cones", "cone"], index, table.span().start, cone, *color, (material.as_deref(), *opacity))
+    };
+    cylinders.iter().enumerate().map(cylinder).chain(cones.iter().enumerate().map(cone)).collect()
+}
