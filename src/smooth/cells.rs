@@ -19,7 +19,10 @@ const AROUND: f64 = 4.0;
 /// The largest side of cells, in terms of [`wanted_side`], up to which near spheres count one by one.
 const MOST_GROWN: f64 = 1.6;
 
-/// Cubes of one size around all spheres.
+/// The factor by which cells are larger in scenes with cones.
+const AMONG_CONES: f64 = 1.5;
+
+/// Cubes of one size around all shapes.
 #[derive(Debug)]
 pub(super) struct Cells {
     /// The corner with the least coordinates.
@@ -35,6 +38,8 @@ impl Cells {
     pub(super) fn new(shapes: &SharedShapes) -> Self {
         let bounds = shapes.bounds(DVec3::ZERO);
         let wanted = if bounds.is_some() { wanted_side(shapes) } else { 1.0 };
+        // Sticks leave most cells empty, so that light passes many of them.
+        let wanted = if shapes.cones.is_empty() { wanted } else { AMONG_CONES * wanted };
         let [low, size] = bounds.map_or([DVec3::ZERO; 2], |bounds| [bounds.min(), bounds.size()]);
         let counts_of = |side: f64| (size / (2.0 * side)).ceil() * 2.0 + 2.0 * AROUND;
         let mut side = wanted;
