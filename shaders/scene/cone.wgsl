@@ -4,7 +4,7 @@
 // The cone, its discs and what they enclose are convex. So a ray enters once and leaves once: between the later one of
 // the entries of the infinite cone and of the slab between the planes of the discs, and the earlier one of the exits. A
 // ray cannot pass between a disc and the side, because one comparison decides for both.
-// provides: cone_normal, intersect
+// provides: cone_normal, discriminant_of, intersect
 // needs: ConeSeen, LEAST_LENGTH, NO_HIT, Ray, Shape, fence, fence3, see_cone, side_crossing
 
 // The least part of a direction along the axis: 2^-40.
@@ -17,6 +17,17 @@ fn no_shape() -> Shape {
 fn is_same(a: Shape, b: Shape) -> bool {
     return all(a.start == b.start) && all(a.end == b.end) && a.first_radius == b.first_radius
         && a.second_radius == b.second_radius;
+}
+
+// Not negative if the ray's line comes near a ball around the cone, whose radius is larger by more than rounding.
+fn discriminant_of(ray: Ray, cone: Shape) -> f32 {
+    let span = cone.end - cone.start;
+    let radius = max(abs(cone.first_radius), abs(cone.second_radius));
+    let to_center = cone.start - ray.origin + 0.5 * span;
+    let b = dot(to_center, ray.direction);
+    let foot = to_center - b * ray.direction;
+    let reach = 1.001 * sqrt(0.25 * dot(span, span) + radius * radius) + 0x1p-18 * abs(b);
+    return reach * reach - dot(foot, foot);
 }
 
 struct ConeHit {

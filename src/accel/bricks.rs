@@ -64,7 +64,11 @@ impl Brick {
     /// The structure of a brick of cones.
     #[cfg(feature = "gpu")]
     pub(crate) fn structure_of_cones(&self) -> Structure {
-        if matches!(self.index, Index::WideTree(_)) { Structure::WideTree } else { Structure::List }
+        match self.index {
+            Index::WideTree(_) => Structure::WideTree,
+            Index::Tiles(_) => Structure::Tiles,
+            _ => Structure::List,
+        }
     }
 
     /// Whether the index is a grid in which some cells have grids of their own.

@@ -155,11 +155,11 @@ impl BrickKind {
         all.filter(|kind| kind.exists())
     }
 
-    /// Whether the structure can find these shapes. Cells and tiles list spheres only.
+    /// Whether the structure can find these shapes. Cells list spheres only.
     const fn exists(self) -> bool {
         match self.primitive {
             Primitive::Sphere => true,
-            Primitive::Cone => matches!(self.structure, Structure::List | Structure::WideTree),
+            Primitive::Cone => matches!(self.structure, Structure::List | Structure::WideTree | Structure::Tiles),
         }
     }
 }

@@ -4,11 +4,13 @@
 //! the tiles in which all pixels have nearer hits than the next slab are done, and its spheres are listed in the others
 //! only. In crowded scenes most spheres are behind those of the first slabs, and are never listed.
 
+use std::borrow::Cow;
 use std::ops::Range;
 use std::sync::atomic::{AtomicU32, Ordering};
 
 use super::bricks::{Brick, Index};
 use super::tiles::{TileLists, TileRange, TileView};
+use crate::geometry::cone::ConeInFrame;
 use crate::parallel::{for_each, map, map_chunks, map_parts, ranges, threads};
 
 /// Spheres for which a picture is a single slab.
@@ -57,7 +59,10 @@ struct Seen {
 #[derive(Debug)]
 pub(crate) struct TileBricks<'a> {
     view: TileView,
-    spheres: &'a [[f32; 4]],
+    /// The spheres, or a ball around each cone.
+    spheres: Cow<'a, [[f32; 4]]>,
+    /// The cones, if there are any, and the id of the first.
+    cones: (&'a [ConeInFrame], u32),
     /// The ids of the spheres of each slab that is still to come, for each run of spheres that a thread has read.
     runs: Vec<std::vec::IntoIter<Vec<u32>>>,
     /// The near distances at which the steps of each slab that is still to come end. The last is infinite.
@@ -81,9 +86,18 @@ pub(crate) enum NoBrick {
 
 impl<'a> TileBricks<'a> {
     pub(crate) fn new(view: TileView, spheres: &'a [[f32; 4]]) -> Self {
-        let slabs = slabs(&view, spheres);
+        Self::of_balls(view, Cow::Borrowed(spheres), (&[], 0))
+    }
+
+    /// The bricks of cones, of which the first has an id.
+    pub(crate) fn of_cones(view: TileView, cones: &'a [ConeInFrame], first: u32) -> Self {
+        Self::of_balls(view, cones.iter().map(ConeInFrame::ball).collect(), (cones, first))
+    }
+
+    fn of_balls(view: TileView, spheres: Cow<'a, [[f32; 4]]>, cones: (&'a [ConeInFrame], u32)) -> Self {
+        let slabs = slabs(&view, &spheres);
         let ends: Vec<f32> = slabs.iter().filter_map(|steps| steps.last().copied()).collect();
-        let runs = map_chunks(spheres, |first, spheres| {
+        let runs = map_chunks(&spheres, |first, spheres| {
             let mut of_slabs = vec![Vec::new(); ends.len()];
             for (id, sphere) in (first as u32..).zip(spheres) {
                 of_slabs[place_of(view.near(*sphere), &ends)].push(id);
@@ -91,7 +105,7 @@ impl<'a> TileBricks<'a> {
             of_slabs.into_iter()
         });
         let (slabs, most_places) = (slabs.into_iter(), most_places(spheres.len()));
-        Self { view, spheres, runs, slabs, left: Vec::new(), end: f32::NEG_INFINITY, most_places, bricks: 0 }
+        Self { view, spheres, cones, runs, slabs, left: Vec::new(), end: f32::NEG_INFINITY, most_places, bricks: 0 }
     }
 
     /// Makes the next brick. `farthest` has the distance of the farthest hit of each tile, row by row, which is infinite
@@ -195,12 +209,16 @@ impl<'a> TileBricks<'a> {
                 }
             },
         );
-        let spheres = map(taken.len(), |index| self.spheres[taken[taken.len() - 1 - index].id as usize]);
-        let ids = taken.iter().rev().map(|seen| seen.id).collect();
+        let at = |index: usize| taken[taken.len() - 1 - index].id as usize;
+        let (all, first) = self.cones;
+        let [of_spheres, of_cones] = if all.is_empty() { [taken.len(), 0] } else { [0, taken.len()] };
+        let spheres = map(of_spheres, |index| self.spheres[at(index)]);
+        let cones = map(of_cones, |index| all[at(index)]);
+        let ids = taken.iter().rev().map(|seen| first + seen.id).collect();
         let nears = taken.iter().rev().map(|seen| seen.near).collect();
         let places = listed.into_iter().map(AtomicU32::into_inner).collect();
         let lists = TileLists { columns: columns as u32, starts, places, nears };
-        Brick { index: Index::Tiles(lists), spheres, cones: Vec::new(), ids }
+        Brick { index: Index::Tiles(lists), spheres, cones, ids }
     }
 
     /// How many of the nearest spheres fit into a brick.

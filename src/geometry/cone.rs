@@ -47,6 +47,16 @@ impl ConeInFrame {
         [reach(-1.0), reach(1.0)]
     }
 
+    /// A ball around it: centre and radius.
+    pub(crate) fn ball(&self) -> [f32; 4] {
+        let ([start, end], [first, second]) = (self.ends(), self.radii());
+        let center = 0.5 * (start + end);
+        let [x, y, z] = center.as_vec3().to_array();
+        let rounding = center.abs().max_element() * f64::from(f32::EPSILON);
+        let radius = (0.5 * (end - start).length()).hypot(first.max(second));
+        [x, y, z, (radius * (1.0 + 1e-6) + rounding) as f32]
+    }
+
     /// True for each end, the first and the second, that is closed.
     pub(crate) fn are_closed(&self) -> [bool; 2] {
         [self.first_radius, self.second_radius].map(f32::is_sign_positive)

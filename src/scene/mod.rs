@@ -1,4 +1,4 @@
-//! Scenes: spheres that have been checked, and their appearance.
+//! Scenes: spheres, cones and cylinders that have been checked, and their appearance.
 
 use std::collections::HashMap;
 use std::sync::Arc;
@@ -42,7 +42,7 @@ pub use frame::SceneExtent;
 pub(crate) use shared::{Shape, SharedShapes};
 pub use update::{Centers, NewColors, SceneUpdate, UpdateError};
 
-/// Spheres in the frame of the scene, which is an f64 origin with f32 offsets, and their appearance.
+/// Spheres, cones and cylinders in the frame of the scene, which is an f64 origin with f32 offsets, and their appearance.
 ///
 /// The frame is that of the world unless the centre of the data is farther from the world's origin, along an axis, than
 /// the longest side of the data's bounding box. Along such an axis, the origin is that centre, so that f32 offsets

@@ -1,4 +1,4 @@
-//! The sphere, which is the only primitive.
+//! Spheres.
 
 use crate::geometry::math::{MAX_LENGTH, MIN_LENGTH};
 use crate::image::color::LinearRgb;

@@ -1,8 +1,9 @@
 //! The light of lamps that are infinitely far away, with and without shadows.
 //!
 //! A lamp has directions that are spread evenly over its disk, or one. A sphere in the way hides those within the cap in
-//! which it is seen, and partly those at its border, so that a shadow has no steps; a border is as wide as directions are
-//! apart, or as a pixel if that is wider. Of overlapping spheres, the one that hides most of a direction counts.
+//! which it is seen, a piece of a cone those within its outline, and both partly those at the border, so that a shadow has
+//! no steps; a border is as wide as directions are apart, or as a pixel if that is wider. Of what overlaps, the one that
+//! hides most of a direction counts.
 
 use std::f64::consts::PI;
 use std::sync::atomic::{AtomicUsize, Ordering};

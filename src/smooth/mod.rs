@@ -1,12 +1,12 @@
 //! Smooth pictures: studios in which nothing is random.
 //!
-//! Such a picture follows from the spheres that rays through the centres of pixels hit, which a device or the reference
-//! finds. A pixel is an *edge* if one of its eight neighbours shows another sphere. It then has rays at some fixed places,
-//! which are the same for all pixels; each may hit the spheres that the pixel and its neighbours show. Every sphere in a
-//! pixel is lit once, where it is hit on average. Ambient light is dimmed by [`Openness`]. In a
+//! Such a picture follows from the shapes that rays through the centres of pixels hit, which a device or the reference
+//! finds. A pixel is an *edge* if one of its eight neighbours shows another shape, or the normal of a cone turns much within
+//! it, as at a rim. It then has rays at some fixed places, which are the same for all pixels; each may hit the shapes that
+//! the pixel and its neighbours show. Every shape in a pixel is lit once, where it is hit on average. Ambient light is dimmed by [`Openness`]. In a
 //! [dense](crate::render::Studio::is_dense) picture, all pixels have rays, whose ids are found as those of a larger film.
 //!
-//! So a picture depends only on spheres, view, settings and ids, and does not depend on
+//! So a picture depends only on shapes, view, settings and ids, and does not depend on
 //! the device that found them.
 
 use glam::DVec3;

@@ -5,13 +5,18 @@ use pinhole::accel::AccelChoice;
 use pinhole::camera::{Camera, FisheyeCamera, OrthographicCamera, PinholeCamera, Pose};
 use pinhole::gpu::{Headless, PictureRequest, Wait};
 use pinhole::image::NO_ID;
-use pinhole::{Film, Image, LayerSet, RenderSettings, Scene, View, cpu};
+use pinhole::render::Studio;
+use pinhole::{Film, Image, Integrator, LayerSet, RenderSettings, Scene, View, cpu};
 
 use crate::support::cones::mixed;
 use crate::trial;
 
 pub(crate) fn trials() -> Vec<Trial> {
-    vec![trial("cones::pictures_agree_with_the_reference", agree), trial("cones::lists_and_trees_agree", structures)]
+    vec![
+        trial("cones::pictures_agree_with_the_reference", agree),
+        trial("cones::lists_and_trees_agree", structures),
+        trial("cones::smooth_pictures_agree_with_the_reference", smooth),
+    ]
 }
 
 fn cameras() -> Vec<Box<dyn Camera>> {
@@ -77,5 +82,23 @@ fn structures(headless: &'static Headless) {
             .map(|choice| picture(headless, &scene, &view, choice));
         assert!(list.id().unwrap() == tree.id().unwrap() && list.id().unwrap() == grid.id().unwrap());
         assert!(list.depth().unwrap() == tree.depth().unwrap() && list.depth().unwrap() == grid.depth().unwrap());
+    }
+}
+
+/// Smooth pictures, whose ids are found by lists for tiles or by trees, are those of the reference.
+fn smooth(headless: &'static Headless) {
+    let studio = Studio { is_smooth: true, ..Studio::default() };
+    let settings = RenderSettings { integrator: Integrator::Studio(studio), ..RenderSettings::default() };
+    for (spheres, cones, size) in [(200, 400, 0.2), (0, 300, 0.3), (3000, 2000, 0.05), (3, 4, 0.6)] {
+        let scene = mixed(spheres, cones, size, 9);
+        let structure = cpu::SearchStructure::new(&scene).unwrap();
+        for camera in cameras() {
+            let view = View::new(camera.as_ref(), Film::new(96, 80).unwrap());
+            assert!(settings.is_smooth(&scene, camera.as_ref()));
+            let found = headless.render(&scene, &view, &settings, LayerSet::ALL).wait().unwrap();
+            let wanted = cpu::render(&structure, &view, &settings, LayerSet::ALL).unwrap();
+            let differ = found.color().iter().zip(wanted.color()).filter(|(a, b)| a != b).count();
+            assert!(differ * 300 < found.color().len(), "{spheres} spheres, {cones} cones: {differ}");
+        }
     }
 }

@@ -118,7 +118,8 @@ impl RenderPlan {
         let PictureRequest { scene, host_bytes_per_pixel, .. } = *request;
         let layers = if keeps_rays { LayerSet::DATA } else { request.layers };
         let (limits, film) = (&device.limits, &request.view.film);
-        let may_be = !keeps_rays && request.is_only;
+        // Bricks of different shapes are not shaded together.
+        let may_be = !keeps_rays && request.is_only && (scene.cones().is_empty() || !request.is_shaded);
         let by_tiles = may_be
             && match accel.choice {
                 AccelChoice::Auto => tile_plan::suits(scene, &request.view, &accel, device),
@@ -130,7 +131,7 @@ impl RenderPlan {
             false => tile_size(limits, device.shape(), film, keeps_rays),
         };
         let of_structure = match by_tiles {
-            true => tile_plan::buffers(scene.len(), tile_size),
+            true => tile_plan::buffers(scene, tile_size),
             false => accel.buffers.clone(),
         };
         let scene_buffers = scene_buffers(scene, of_structure);
@@ -150,10 +151,10 @@ impl RenderPlan {
             0
         });
         let picture = film.pixel_count().saturating_mul(per_pixel);
-        let checker = Checker::BYTES_PER_SPHERE * scene.len() as u64;
+        let checker = Checker::BYTES_PER_SPHERE * scene.shape_count() as u64;
         let checking = if keeps_rays { picture.saturating_add(checker) } else { 0 };
         let [building, uploading] = if by_tiles {
-            let listing = tile_plan::building_bytes(scene.len(), tile_size);
+            let listing = tile_plan::building_bytes(scene.shape_count(), tile_size);
             [listing + scene_bytes + in_host(scene_bytes), listing + 2 * scene_bytes + in_host(scene_bytes)]
         } else {
             [device.building_bytes(&accel, &scene_buffers), device.uploading_bytes(&accel, &scene_buffers)]

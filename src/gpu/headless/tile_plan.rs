@@ -7,6 +7,7 @@ use crate::accel::tiles::{Projection, SIDE, TileCamera, TileView};
 use crate::accel::{AccelPlan, PlannedBuffer};
 use crate::camera::film::YAxis;
 use crate::camera::{CameraKind, View};
+use crate::geometry::cone::ConeInFrame;
 use crate::gpu::device_shape::DeviceLimits;
 use crate::gpu::passes::bands::rows_per_band;
 use crate::gpu::passes::tiles::{Tile, tile_size};
@@ -62,11 +63,14 @@ fn space_of(scene_origin: glam::DVec3, plan: &AccelPlan) -> SceneSpace {
 ///
 /// Only software devices were measured: there, one picture takes less time than building the structure for it.
 pub(crate) fn suits(scene: &Scene, view: &View<'_>, plan: &AccelPlan, device: &DeviceLimits) -> bool {
-    if device.device_type != wgpu::DeviceType::Cpu || scene.len() <= FEW {
+    let count = scene.shape_count();
+    if device.device_type != wgpu::DeviceType::Cpu || count <= FEW {
         return false;
     }
-    let most = PLACES_PER_SPHERE.max(FEW_PLACES / scene.len() as f64);
-    of_picture(scene, view, plan).is_some_and(|tiles| mean_tiles(&tiles, scene.spheres()) <= most)
+    let most = PLACES_PER_SPHERE.max(FEW_PLACES / count as f64);
+    let balls: Vec<[f32; 4]> = scene.cones().iter().map(ConeInFrame::ball).collect();
+    let are_few = |tiles| [scene.spheres(), &balls].iter().all(|all| mean_tiles(&tiles, all) <= most);
+    of_picture(scene, view, plan).is_some_and(are_few)
 }
 
 /// The tiles of a whole picture; `None` if it cannot have any.
@@ -75,7 +79,7 @@ pub(crate) fn of_picture(scene: &Scene, view: &View<'_>, plan: &AccelPlan) -> Op
     let size = [view.film.width(), view.film.height()];
     // Tiles are numbered in 16 bits along each axis.
     let are_few = size.iter().all(|side| side.div_ceil(SIDE) <= u32::from(u16::MAX));
-    if !kinds.contains(&view.camera.kind()) || scene.is_empty() || !scene.cones().is_empty() || !are_few {
+    if !kinds.contains(&view.camera.kind()) || scene.is_empty() || !are_few {
         return None;
     }
     let tile = Tile { origin: [0, 0], size, in_target: [0, 0] };
@@ -106,11 +110,13 @@ fn tile_count(part: [u32; 2]) -> u64 {
 }
 
 /// The buffers of one brick of lists for a part of a picture.
-pub(crate) fn buffers(spheres: usize, part: [u32; 2]) -> Vec<PlannedBuffer> {
-    let (listed, tiles) = (listed(spheres, part), tile_count(part));
+pub(crate) fn buffers(scene: &Scene, part: [u32; 2]) -> Vec<PlannedBuffer> {
+    let count = scene.shape_count();
+    let (listed, tiles) = (listed(count, part), tile_count(part));
+    let bytes = if scene.cones().is_empty() { size_of::<[f32; 4]>() } else { size_of::<ConeInFrame>() };
     vec![
-        PlannedBuffer::one("spheres", 16 * listed),
-        PlannedBuffer::one("ids", 4 * (2 * listed + places(spheres, part) + tiles + 1)),
+        PlannedBuffer::one("spheres", bytes as u64 * listed),
+        PlannedBuffer::one("ids", 4 * (2 * listed + places(count, part) + tiles + 1)),
         PlannedBuffer::one("tiles", 4 * tiles),
     ]
 }

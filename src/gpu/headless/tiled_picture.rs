@@ -2,7 +2,7 @@
 
 use crate::accel::tile_lists::{NoBrick, ONE_SLAB, TileBricks};
 use crate::accel::tiles::TileLists;
-use crate::accel::{Brick, BrickBounds, BrickKind, Index, Primitive, Structure};
+use crate::accel::{Brick, BrickBounds, BrickKind, Index, Structure};
 use crate::gpu::checks::scoped;
 use crate::gpu::error::GpuError;
 use crate::gpu::headless::Headless;
@@ -35,18 +35,22 @@ impl Headless {
         let PictureRequest { scene, view, settings, layers, is_shaded, .. } = request;
         let what = ReadBack::new(*layers, *is_shaded);
         let (device, queue, film) = (self.device(), self.queue(), &view.film);
-        let kind = BrickKind { structure: Structure::Tiles, primitive: Primitive::Sphere };
+        let structure = Structure::Tiles;
+        let kinds = plan.accel.kinds(structure).into_iter().map(|kind| BrickKind { structure, ..kind });
+        let kinds: Vec<BrickKind> = kinds.collect();
         let options_of = |several_bricks| {
-            let options = self.options_of(&[kind], several_bricks, view.camera);
+            let options = self.options_of(&kinds, several_bricks, view.camera);
             RendererOptions { data_layers: what.has_data(), ..options }
         };
-        let brick_space = BrickSpace { structure: kind.structure, bounds: plan.accel.statistics.inflated_bounds() };
+        let brick_space = BrickSpace { structure, bounds: plan.accel.statistics.inflated_bounds() };
         // In every brick, the nearest of equal spheres has the smallest id, so the ids of the input suffice.
         let ids = ShapeIds::of_all(scene, false);
         let mut image = Image::new(film.width(), film.height(), *layers)?;
         self.alone(async |renderers: &mut Renderers| {
-            let layouts = self.layouts_of(vec![kind.structure], None).await?;
-            let has_slabs = scene.len() > ONE_SLAB;
+            let layouts = self.layouts_of(vec![structure], Some(structure)).await?;
+            let has_both = scene.len() > 0 && !scene.cones().is_empty();
+            // Pipelines for cones always go on from the hits of spheres.
+            let has_slabs = scene.len() > ONE_SLAB || !has_both && scene.cones().len() > ONE_SLAB;
             self.begin_renderer(renderers, options_of(has_slabs));
             let summary = SceneSummary::of(scene);
             let no_bricks = UploadedBricks { space: brick_space, bricks: Vec::new(), bytes: 0 };
@@ -64,7 +68,11 @@ impl Headless {
                 // Another structure is tried.
                 let Some(tiles) = tiles else { return Err(GpuError::Steps) };
                 let phase = self.phase("divide");
-                let mut bricks = TileBricks::new(tiles, scene.spheres());
+                let mut bricks = match has_both || scene.cones().is_empty() {
+                    true => TileBricks::new(tiles, scene.spheres()),
+                    false => TileBricks::of_cones(tiles, scene.cones(), 0),
+                };
+                let (mut cones_are_left, mut made, mut several) = (has_both, 0, has_slabs);
                 drop(phase);
                 let mut farthest = vec![f32::INFINITY; tiles.count()];
                 let mut upload = SceneUpload::new(&layouts, device, queue, &buffers.summary, brick_space, &ids).await?;
@@ -72,19 +80,26 @@ impl Headless {
                 let most_listed = tile_plan::listed(scene.len(), tile.size) as usize;
                 let mut traced = Traced::default();
                 loop {
-                    let number = bricks.made();
+                    let number = made;
                     let mut tell = |step| UploadProgress { step, brick: number, bricks: number + 1 }.tell(upload_watch);
                     tell(UploadStep::Building)?;
                     let phase = self.phase("build");
                     let brick = match bricks.next(&farthest) {
                         Ok(brick) => brick,
+                        Err(NoBrick::Done) if cones_are_left => {
+                            cones_are_left = false;
+                            bricks = TileBricks::of_cones(tiles, scene.cones(), scene.len() as u32);
+                            continue;
+                        }
                         Err(NoBrick::Done) => break,
                         Err(NoBrick::TooMany) => return Err(GpuError::Steps),
                     };
                     drop(phase);
+                    made += 1;
+                    several |= bricks.made() > 1 && cones_are_left == has_both;
                     if let (true, Some((frame, part))) = (traced.listed() + brick.spheres.len() > most_listed, &frame) {
                         traced.upload(self, (&layouts, &ids), &mut buffers).await?;
-                        let renderer = renderers.of(device, options_of(has_slabs || number > 1)).await?;
+                        let renderer = renderers.of(device, options_of(several)).await?;
                         let (encoder, noted) = self.shading(renderer, &buffers, frame, part.band, &textures)?;
                         self.run_timed(encoder, noted, &[]).await?;
                         traced = traced.after();
@@ -94,8 +109,10 @@ impl Headless {
                     upload.brick(&brick).await?;
                     drop(phase);
                     buffers.bricks = upload.take_bricks();
-                    traced.add(brick);
-                    let renderer = renderers.of(device, options_of(has_slabs || number > 0)).await?;
+                    if textures.are_shaded() {
+                        traced.add(brick);
+                    }
+                    let renderer = renderers.of(device, options_of(several)).await?;
                     if frame.is_none() {
                         let mut new = Frame::new(renderer, device, &textures.targets()).await?;
                         new.set_bricks(queue, &buffers, &visible, view, tile, &primary);
@@ -114,7 +131,7 @@ impl Headless {
                         self.submit_slice(encoder, noted, groups, &buffers, &[]).await?;
                         done.add(if number == 0 { groups } else { Groups::NONE }, watch)?;
                     }
-                    if !bricks.may_go_on() {
+                    if !bricks.may_go_on() && !cones_are_left {
                         break;
                     }
                     let Some(of_tiles) = buffers.bricks.first().and_then(|brick| brick.farthest.as_ref()) else {
@@ -128,7 +145,7 @@ impl Headless {
                 }
                 let Some((frame, part)) = &frame else { continue };
                 traced.upload(self, (&layouts, &ids), &mut buffers).await?;
-                let renderer = renderers.of(device, options_of(has_slabs || bricks.made() > 1)).await?;
+                let renderer = renderers.of(device, options_of(several)).await?;
                 let (mut encoder, noted) = self.shading(renderer, &buffers, frame, part.band, &textures)?;
                 let mapped = textures.record_read_back(&mut encoder, frame, tile.size);
                 self.run_timed(encoder, noted, &mapped).await?;

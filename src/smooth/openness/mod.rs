@@ -1,7 +1,7 @@
 //! Openness: the share of ambient light that reaches a point of a surface, without random rays.
 //!
-//! Spheres near a point count one by one, and all others through *cells*, cubes with eight sample points each, of which
-//! those inside spheres are counted. The light that passes through the cells along 32 directions is the same for all
+//! Spheres near a point count one by one, cones near it as strings of balls inside them, and all others through *cells*, cubes with eight sample points each, of which
+//! those inside shapes are counted. The light that passes through the cells along 32 directions is the same for all
 //! points around a *vertex*, the centre of every second cell along each axis, so that it is computed once for each vertex
 //! that a visible point needs. A near sphere fades out over the distances at which its cells fade in.
 //!
