@@ -84,12 +84,15 @@ fn side_crossing(ray: Ray, seen: ConeSeen) -> SideCrossing {
     let discriminant =
         fence(fence(sine * radius * radius - side * side) + growth * fence(growth * square - 2.0 * tilt * radius));
     let root = sqrt(max(discriminant, 0.0));
-    let sum = fence(half_b + select(root, -root, half_b < 0.0));
+    let to_far = select(root, -root, half_b < 0.0);
+    let sum = fence(half_b + to_far);
     let is_flat = abs(a) < LEAST_SQUARE;
-    // Neither root is a difference of nearly equal numbers. Without a sum, both are zero, or both at infinity.
-    let one = select(clamp(-sum / select(a, 1.0, is_flat), -FAR, FAR), select(-FAR, FAR, sum < 0.0), is_flat);
-    let has_sum = sum != 0.0;
-    let two = select(clamp(-c / select(1.0 / FAR, sum, has_sum), -FAR, FAR), 0.0, !has_sum && !is_flat);
+    let divisor = select(a, 1.0, is_flat);
+    let one = select(clamp(-sum / divisor, -FAR, FAR), select(-FAR, FAR, sum < 0.0), is_flat);
+    // The other root is -c/sum, but near the foot c is rounding errors and the sum next to nothing, or both are nothing.
+    let is_quotient = is_flat || sum * sum > abs(a) * max(square, radius * radius);
+    let quotient = -c / select(1.0 / FAR, sum, sum != 0.0);
+    let two = clamp(select(-fence(half_b - to_far) / divisor, quotient, is_quotient), -FAR, FAR);
     let low = min(one, two);
     let high = max(one, two);
     // A ray that is steeper than the side is inside before the first or after the second root, on the side of the tip

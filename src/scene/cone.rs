@@ -12,6 +12,9 @@ const MAX_LENGTH: f64 = (1_u64 << 40) as f64;
 /// The most by which length and larger radius differ, as a factor.
 const MOST_ASPECT: f64 = 1e4;
 
+/// By how much limits are wider for cones that were rounded to f32, as a factor.
+const IN_FRAME: f64 = 1.0 + 1.0 / (1 << 20) as f64;
+
 /// A cone between two discs, in world space, that has not been checked. A cylinder has two equal radii, and the tip of a
 /// pointed cone has radius 0. [`Scene::from_shapes`](crate::Scene::from_shapes) checks it.
 ///
@@ -80,16 +83,22 @@ impl Cone {
     /// Returns an error if a coordinate or radius is not finite or too large, if both radii are 0, or if the cone is too
     /// thin or too flat.
     pub fn check(&self) -> Result<(), ConeError> {
+        self.check_within(1.0)
+    }
+
+    /// Checks that the cone is in range, whose limits are wider by a factor.
+    fn check_within(&self, slack: f64) -> Result<(), ConeError> {
         let Self { start, end, radii, .. } = *self;
+        let longest = slack * MAX_LENGTH;
         for (name, place) in [("start", start), ("end", end)] {
             // `contains` is false for NaN.
-            if !place.iter().all(|x| (-MAX_LENGTH..=MAX_LENGTH).contains(x)) {
+            if !place.iter().all(|x| (-longest..=longest).contains(x)) {
                 return Err(ConeError(format!(
                     "its {name} is {place:?}; every coordinate must be finite and at most {MAX_LENGTH:e} in size"
                 )));
             }
         }
-        let is_radius = |radius: &f64| *radius == 0.0 || (1.0 / MAX_LENGTH..=MAX_LENGTH).contains(radius);
+        let is_radius = |radius: &f64| *radius == 0.0 || (1.0 / longest..=longest).contains(radius);
         if let Some(radius) = radii.iter().find(|radius| !is_radius(radius)) {
             let range = format!("finite, and between {:e} and {MAX_LENGTH:e}, or 0 at a tip", 1.0 / MAX_LENGTH);
             return Err(ConeError(format!("its radius is {radius:?}; a radius must be {range}")));
@@ -102,13 +111,13 @@ impl Cone {
         if length == 0.0 {
             return Err(ConeError(format!("it has no length: start and end are both {start:?}")));
         }
-        if length > MOST_ASPECT * radius {
+        if length > slack * MOST_ASPECT * radius {
             return Err(ConeError(format!(
                 "its length, {length:?}, is more than {MOST_ASPECT} times its radius, {radius:?}; make it thicker, or \
                  several shorter ones of it"
             )));
         }
-        if radius > MOST_ASPECT * length {
+        if radius > slack * MOST_ASPECT * length {
             return Err(ConeError(format!(
                 "its radius, {radius:?}, is more than {MOST_ASPECT} times its length, {length:?}; make it longer"
             )));
@@ -122,17 +131,9 @@ impl Cone {
         Bounds::of_sphere(start, self.radii[0]).union(Bounds::of_sphere(end, self.radii[1]))
     }
 
-    /// The cone in a frame. An error if rounding leaves no length.
+    /// The cone in a frame. An error if rounding leaves no length, or too little or too much for its radius.
     pub(super) fn in_frame(&self, origin: DVec3) -> Result<ConeInFrame, ConeError> {
-        let [start, end] = [self.start, self.end].map(|place| (DVec3::from(place) - origin).as_vec3());
-        let is_lost = start == end;
-        let [start, end] = [start, end].map(|place| place.to_array());
-        if is_lost {
-            return Err(ConeError(format!(
-                "its start and end are both {start:?} after rounding to f32 in the scene's frame, whose origin is {:?}",
-                origin.to_array()
-            )));
-        }
+        let [start, end] = [self.start, self.end].map(|place| (DVec3::from(place) - origin).as_vec3().to_array());
         let [is_first, is_second] = match self.caps {
             Caps::None => [false, false],
             Caps::First => [true, false],
@@ -141,8 +142,20 @@ impl Cone {
         };
         let signed = |radius: f64, is_closed: bool| if is_closed { radius as f32 } else { -(radius as f32) };
         let [first_radius, second_radius] = [signed(self.radii[0], is_first), signed(self.radii[1], is_second)];
-        Ok(ConeInFrame { start, first_radius, end, second_radius })
+        let rounded = ConeInFrame { start, first_radius, end, second_radius };
+        check_in_frame(&rounded).map_err(|ConeError(error)| {
+            let origin = origin.to_array();
+            ConeError(format!("after rounding to f32 in the scene's frame, whose origin is {origin:?}, {error}"))
+        })?;
+        Ok(rounded)
     }
+}
+
+/// Checks a cone of a frame. Its limits are wider, so that rounding alone does not push it out of range, except if it is
+/// too small where it is.
+pub(super) fn check_in_frame(cone: &ConeInFrame) -> Result<(), ConeError> {
+    let [start, end] = cone.ends().map(|end| end.to_array());
+    Cone::new(start, end, cone.radii()).check_within(IN_FRAME)
 }
 
 #[cfg(test)]

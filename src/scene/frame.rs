@@ -4,6 +4,8 @@
 use glam::{DVec3, Vec3};
 
 use super::cone::Cone;
+#[cfg(feature = "run-file")]
+use super::cone::check_in_frame;
 use super::error::SceneError;
 use super::shared::SharedShapes;
 use crate::geometry::bounds::Bounds;
@@ -42,6 +44,13 @@ pub(super) fn cones_in_frame(cones: &[Cone], origin: DVec3) -> Result<Vec<ConeIn
     let in_frame =
         |(index, cone): (usize, &Cone)| cone.in_frame(origin).map_err(|error| SceneError::Cone { index, error });
     cones.iter().enumerate().map(in_frame).collect()
+}
+
+/// Checks cones that are in a frame.
+#[cfg(feature = "run-file")]
+pub(super) fn check_cones_in_frame(cones: &[ConeInFrame]) -> Result<(), SceneError> {
+    let check = |(index, cone)| check_in_frame(cone).map_err(|error| SceneError::Cone { index, error });
+    cones.iter().enumerate().try_for_each(check)
 }
 
 /// Checks the number of spheres and each sphere, and returns the bounding box of all.

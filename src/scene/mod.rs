@@ -235,18 +235,23 @@ impl Scene {
     /// Restores a scene from its parts, to the bit, except that the bounds are computed from the f32 numbers.
     ///
     /// # Errors
-    /// Returns the same errors as [`Scene::from_parts`], and an error if the origin is out of range.
+    /// Returns the same errors as [`Scene::from_shapes`], and an error if the origin is out of range.
     #[cfg(feature = "run-file")]
     pub(crate) fn from_frame(
         origin: DVec3,
-        spheres: Vec<[f32; 4]>,
+        (spheres, cones): (Vec<[f32; 4]>, Vec<ConeInFrame>),
         appearance: Appearance,
     ) -> Result<Self, SceneError> {
         check_origin(origin)?;
-        appearance.check(spheres.len())?;
+        let count = spheres.len() + cones.len();
+        check_count(count)?;
+        appearance.check(count)?;
         bounds_of_checked(&spheres, frame::slackened)?;
-        let bounds = frame::bounds_in_frame(origin, &spheres);
-        Ok(Self::in_frame(origin, (spheres, Vec::new()), appearance, bounds))
+        frame::check_cones_in_frame(&cones)?;
+        let mut scene = Self::in_frame(origin, (spheres, cones), appearance, None);
+        scene.bounds = scene.shapes.bounds(origin);
+        scene.check_cones()?;
+        Ok(scene)
     }
 
     /// The origin of the scene's frame in world space.

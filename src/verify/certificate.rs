@@ -62,9 +62,9 @@ impl fmt::Display for Outcome {
 pub enum Verdict {
     /// There is a single legal answer, and the device gave it.
     Decided,
-    /// Both a sphere and a miss are legal, and the device gave one of them.
+    /// Both a shape and a miss are legal, and the device gave one of them.
     Silhouette,
-    /// Several spheres are legal, and the device gave one of them.
+    /// Several shapes are legal, and the device gave one of them.
     Tie,
     /// The device gave an answer that is not legal.
     Violation,
@@ -110,13 +110,19 @@ pub(super) const CHUNK: usize = 1 << 12;
 /// The largest number of violations that are kept. All are counted.
 pub(super) const KEPT: usize = 1000;
 
+/// The name of a shape in messages. `first_cone` is the id of the first cone, if there are cones.
+pub(super) fn shape_name(first_cone: Option<u32>, id: u32) -> String {
+    let kind = if first_cone.is_some_and(|first| id >= first) { "cone or cylinder with id" } else { "sphere" };
+    format!("{kind} {id}")
+}
+
 impl LegalHits {
     /// An answer in words, with the legal answers.
     #[must_use]
     pub fn message(&self, id: u32, t: f32) -> String {
         match id {
             NO_ID => format!("a miss; legal is {self}"),
-            id => format!("sphere {id} at {t:?}; legal is {self}"),
+            id => format!("{} at {t:?}; legal is {self}", shape_name(self.first_cone, id)),
         }
     }
 }
@@ -125,7 +131,8 @@ impl fmt::Display for LegalHits {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         let mut answers: Vec<String> = Vec::new();
         for hit in &self.spheres {
-            answers.extend(hit.crossings().map(|side| format!("sphere {} at {side}", hit.id)));
+            let name = shape_name(self.first_cone, hit.id);
+            answers.extend(hit.crossings().map(|side| format!("{name} at {side}")));
         }
         if self.miss {
             answers.push("a miss".to_owned());

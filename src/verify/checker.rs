@@ -7,15 +7,17 @@ use crate::geometry::math::wide;
 use crate::image::{Image, NO_ID};
 use crate::parallel::{map_parts, ranges};
 use crate::recording::{NO_HIT, PlainRender, Recording, TracedPixel, TracedRay, pixel_at};
-use crate::scene::{Scene, SceneError};
+use crate::scene::{Scene, SceneError, Shape};
 use crate::verify::bias::Deviations;
 use crate::verify::camera::{AnyRay, CameraModel, EnteredRay};
 use crate::verify::certificate::{
-    AXES, CHUNK, Certificate, KEPT, Mismatch, Verdict, Violation, channel_name, legal_is,
+    AXES, CHUNK, Certificate, KEPT, Mismatch, Verdict, Violation, channel_name, legal_is, shape_name,
 };
+use crate::verify::cone::LegalConeHits;
 use crate::verify::hit::{Candidates, LegalHits};
-use crate::verify::rounding::{Interval, PAD, U, unit_error};
-use crate::verify::sphere::{LegalNormals, Line, Slack, SphereTest, exactly, legal_color, legal_depth};
+use crate::verify::normals::LegalNormals;
+use crate::verify::rounding::{Interval, PAD, U};
+use crate::verify::sphere::{Line, Slack, SphereTest, exactly, legal_color, legal_depth};
 use crate::verify::uploaded::check_recording;
 
 /// Judges recordings of a scene.
@@ -33,12 +35,12 @@ impl<'a> Checker<'a> {
     /// The largest number of bytes that the checker needs for each sphere.
     pub const BYTES_PER_SPHERE: u64 = 40;
 
-    /// Prepares a scene. This takes 24 bytes for each sphere, and 8 to 16 for boxes.
+    /// Prepares a scene. This takes 20 bytes for each sphere, 36 for each cone, and 8 to 16 for boxes.
     ///
     /// # Errors
     /// Returns an error if there is not enough memory.
     pub fn new(scene: &'a Scene) -> Result<Self, SceneError> {
-        Ok(Self { scene, candidates: Candidates::new(scene.spheres())? })
+        Ok(Self { scene, candidates: Candidates::new(scene.spheres(), scene.cones())? })
     }
 
     /// Every answer that a conforming device may give for a ray with exactly these numbers, in the scene's frame. The
@@ -219,13 +221,15 @@ impl PixelCheck<'_> {
             None => ShadingRay::from(camera_ray.any(&self.model)),
         };
         if layers.id != id {
-            return Err(wrong_id(layers.id, id));
+            return Err(self.wrong_id(layers.id, id));
         }
         if !depths.contains(layers.depth.into()) {
             return Err(Mismatch::value("depth", layers.depth, depths));
         }
         let normal = self.check_shading(&layers, &shading)?;
-        if let Some(measured) = measured.filter(|_| verdict == Verdict::Decided) {
+        // The exact numbers of a cone are not in the middle of their bounds.
+        let is_sphere = self.checker.candidates.first_cone.is_none_or(|first| id < first);
+        if let Some(measured) = measured.filter(|_| verdict == Verdict::Decided && is_sphere) {
             for (what, found, legal) in entered.numbers(&ray) {
                 measured.measure("camera", what, found, legal);
             }
@@ -246,7 +250,7 @@ impl PixelCheck<'_> {
 
     pub(super) fn check_layers_of_miss(&self, layers: &Layers) -> Result<(), Mismatch> {
         if layers.id != NO_ID {
-            return Err(wrong_id(layers.id, NO_ID));
+            return Err(self.wrong_id(layers.id, NO_ID));
         }
         let infinity = Interval { low: f64::INFINITY, high: f64::INFINITY };
         if layers.depth != f32::INFINITY {
@@ -259,16 +263,20 @@ impl PixelCheck<'_> {
         check_color(layers.color, background.map(exactly))
     }
 
+    fn wrong_id(&self, found: u32, traced: u32) -> Mismatch {
+        let first_cone = self.checker.candidates.first_cone;
+        let name = |id| if id == NO_ID { "a miss".to_owned() } else { shape_name(first_cone, id) };
+        Mismatch::new("id", format!("the picture has {}; {} was found", name(found), name(traced)))
+    }
+
     /// Judges normal and colour of a hit. Returns the deviation of the normal from the exact
     /// normal, relative to its bound.
     fn check_shading(&self, layers: &Layers, ray: &ShadingRay) -> Result<f64, Mismatch> {
         let (scene, id) = (self.checker.scene, layers.id);
-        let sphere = scene.spheres()[id as usize];
-        let normals = LegalNormals::new(&ray.line, sphere, ray.slack);
+        let normals = LegalNormals::new(&ray.line, scene.shared_shapes().shape(id), ray.slack);
         let normal = wide(layers.normal);
         let fraction = normals.fraction(normal);
-        let is_unit = (normal.length() - 1.0).abs() <= unit_error(sphere[3].into());
-        if !(fraction <= 1.0 && is_unit) {
+        if !(fraction <= 1.0 && normals.is_unit(normal)) {
             let (exact, error) = normals.crossings().next().unwrap_or_default();
             return Err(wrong_normal(layers.normal, exact, error));
         }
@@ -282,7 +290,7 @@ impl PixelCheck<'_> {
     fn measure_shading(&self, layers: &Layers, ray: &ShadingRay, measured: &mut Deviations) {
         let (scene, id) = (self.checker.scene, layers.id);
         let normal = wide(layers.normal);
-        let normals = LegalNormals::new(&ray.line, scene.spheres()[id as usize], ray.slack);
+        let normals = LegalNormals::new(&ray.line, scene.shared_shapes().shape(id), ray.slack);
         if let Some((exact, error)) = normals.only() {
             for axis in 0..3 {
                 let legal = Interval::around(exact[axis], error);
@@ -335,10 +343,18 @@ impl PixelCheck<'_> {
         self.check_shading(layers, &ray.into()).map(|_| ())
     }
 
-    /// The legal depths of a sphere, if the ray certainly hits one particular side. These bounds are tighter, because
+    /// The legal depths of a shape, if the ray certainly hits one particular side. These bounds are tighter, because
     /// they do not depend on where the ray enters the scene's box.
     fn legal_depth(&self, ray: &AnyRay, id: u32) -> Option<Interval> {
-        let sphere = *self.checker.scene.spheres().get(id as usize)?;
+        let sphere = match self.checker.scene.shared_shapes().shape(id) {
+            Shape::Sphere(sphere) => sphere,
+            Shape::Cone(cone) => {
+                let is_decided = LegalConeHits::of(&ray.line, ray.slack, &cone).is_decided();
+                let closer = LegalConeHits::of(&ray.line, ray.slack_of_distance, &cone);
+                let sides = [true, false].map(|is_near| closer.distances(is_near));
+                return sides.into_iter().flatten().next().filter(|_| is_decided).map(|side| ray.depths(side));
+            }
+        };
         let roots = SphereTest::new(&ray.line, sphere, ray.slack)?.roots();
         let test = SphereTest::new(&ray.line, sphere, ray.slack_of_distance)?.as_the_kernel();
         let closer = test.roots();
@@ -360,11 +376,6 @@ fn check_ray(entered: &EnteredRay, ray: &TracedRay) -> Result<(), Mismatch> {
 
 fn check_color(found: [f32; 3], legal: [Interval; 3]) -> Result<(), Mismatch> {
     (0..3).try_for_each(|channel| legal_is("color", channel_name(channel), found[channel], legal[channel]))
-}
-
-fn wrong_id(found: u32, traced: u32) -> Mismatch {
-    let name = |id| if id == NO_ID { "a miss".to_owned() } else { format!("sphere {id}") };
-    Mismatch::new("id", format!("the picture has {}; {} was found", name(found), name(traced)))
 }
 
 fn wrong_normal(found: [f32; 3], exact: DVec3, error: f64) -> Mismatch {

@@ -1,12 +1,15 @@
 //! The check of the cone test: every legal result of `intersect` and of `cone_normal` in `shaders/scene/cone.wgsl`. The
 //! lines of the kernel are followed number by number (`verify/number`). Decisions that bounds leave open are followed
-//! both ways.
+//! both ways. A ray that is known only within bounds has numbers that are intervals.
+
+use glam::DVec3;
 
 use crate::geometry::cone::ConeInFrame;
 use crate::recording::NO_HIT;
 use crate::verify::choices::Choices;
 use crate::verify::number::{Number, Vector};
-use crate::verify::rounding::Interval;
+use crate::verify::rounding::{FLUSH, Interval, PAD, U, unit_error};
+use crate::verify::sphere::{Line, Slack};
 
 /// Constants of the kernel, by their names there.
 pub(crate) const FAR: f32 = 1e30;
@@ -21,6 +24,8 @@ pub struct LegalConeHit {
     pub t: Interval,
     /// The unit normal.
     pub normal: [Interval; 3],
+    /// A bound of the normal's deviation from unit length.
+    pub(super) off_unit: f64,
     /// True if the ray enters there, and true if it crosses a disc.
     place: [bool; 2],
 }
@@ -40,10 +45,16 @@ impl LegalConeHits {
     /// The legal answers of a device to a ray with these numbers.
     #[must_use]
     pub fn new(origin: [f32; 3], direction: [f32; 3], cone: &ConeInFrame) -> Self {
+        Self::of(&Line::new(origin, direction), Slack::default(), cone)
+    }
+
+    /// The legal answers to a ray, or to any ray within `slack` of it.
+    pub(super) fn of(line: &Line, slack: Slack, cone: &ConeInFrame) -> Self {
         let mut legal = Self::default();
         let mut choices = Choices::default();
+        let ray = AnyRay::new(line, slack);
         loop {
-            match hit(origin, direction, cone, &mut choices) {
+            match hit(&ray, cone, &mut choices) {
                 Some(hit) => legal.hits.push(hit),
                 None => legal.may_miss = true,
             }
@@ -66,6 +77,15 @@ impl LegalConeHits {
         self.is_open || if t >= NO_HIT { self.may_miss } else { self.hits.iter().any(is_of) }
     }
 
+    /// All legal distances at which a ray enters, or those at which it leaves. They may contain others.
+    pub(super) fn distances(&self, is_near: bool) -> Option<Interval> {
+        if self.is_open {
+            return is_near.then_some(ABOVE_ZERO);
+        }
+        let hits = self.hits.iter().filter(|hit| hit.place[0] == is_near);
+        hits.map(|hit| hit.t).reduce(Interval::union)
+    }
+
     /// Returns true if only one answer is legal, apart from its numbers.
     #[must_use]
     pub fn is_decided(&self) -> bool {
@@ -74,10 +94,35 @@ impl LegalConeHits {
     }
 }
 
+const ABOVE_ZERO: Interval = Interval { low: 0.0, high: f64::INFINITY };
+
+/// All rays within bounds.
+struct AnyRay {
+    origin: Vector,
+    direction: Vector,
+    /// By how much distances differ because rays start elsewhere along the line, which changes nothing else.
+    moved: Number,
+}
+
+impl AnyRay {
+    fn new(line: &Line, Slack { across, along, direction }: Slack) -> Self {
+        let moved = if along == 0.0 { Number::ZERO } else { Number::around(0.0, PAD * along) };
+        // From there, eight roundings lead to the vector of the foot.
+        let across = PAD * (across + 8.0 * U * along);
+        Self { origin: within(line.origin, across), direction: within(line.direction, PAD * direction), moved }
+    }
+}
+
+/// All vectors within `error` along each axis. Subnormal numbers may count as zero.
+fn within(exact: DVec3, error: f64) -> Vector {
+    Vector::around(exact, error).map(|c| if c.interval().size() < FLUSH { c.union(Number::ZERO) } else { c })
+}
+
 /// The answer of the kernel for one combination of open decisions. `None` for a miss.
-fn hit(origin: [f32; 3], direction: [f32; 3], cone: &ConeInFrame, choices: &mut Choices) -> Option<LegalConeHit> {
+fn hit(ray: &AnyRay, cone: &ConeInFrame, choices: &mut Choices) -> Option<LegalConeHit> {
     let (zero, two, half) = (Number::ZERO, Number::TWO, Number::HALF);
-    let [origin, direction, start, end] = [origin, direction, cone.start, cone.end].map(Vector::recorded);
+    let [start, end] = [cone.start, cone.end].map(Vector::recorded);
+    let AnyRay { origin, direction, moved } = *ray;
     let [first, second] = [cone.first_radius, cone.second_radius].map(|radius| Number::recorded(radius.abs()));
     let span = (end - start).fence();
     let length = span.dot(span).fence().max(Number::known(LEAST_LENGTH.into())).sqrt().fence();
@@ -112,12 +157,15 @@ fn hit(origin: [f32; 3], direction: [f32; 3], cone: &ConeInFrame, choices: &mut 
     let far = Number::known(FAR.into());
     let limited = |s: Number| s.max(-far).min(far);
     // The lower and the higher root, for either sign of `half_b` that it may have.
-    let of_sign = |sum: Number| {
+    let of_sign = |sum: Number, rest: Number| {
         let sum = sum.fence();
-        let second = match sum.is_zero() {
-            true if is_flat => limited(-c * far),
-            true => zero,
-            false => limited(-c / sum),
+        let quotient = || limited(if sum.is_zero() { -c * far } else { -c / sum });
+        let difference = || limited(-rest.fence() / a);
+        let second = match sum.squared().is_more(a.abs() * square.max(radius * radius)) {
+            _ if is_flat => quotient(),
+            Some(true) => quotient(),
+            Some(false) => difference(),
+            None => quotient().union(difference()),
         };
         let first = match sum.is_less(zero) {
             _ if !is_flat => limited(-sum / a),
@@ -127,7 +175,8 @@ fn hit(origin: [f32; 3], direction: [f32; 3], cone: &ConeInFrame, choices: &mut 
         };
         (first.min(second), first.max(second))
     };
-    let (negative, positive) = (|| of_sign(half_b - root), || of_sign(half_b + root));
+    let (less, more) = (half_b - root, half_b + root);
+    let (negative, positive) = (|| of_sign(less, more), || of_sign(more, less));
     let (low, high) = match half_b.is_less(zero) {
         Some(true) => negative(),
         Some(false) => positive(),
@@ -159,29 +208,30 @@ fn hit(origin: [f32; 3], direction: [f32; 3], cone: &ConeInFrame, choices: &mut 
     let is_up = !(enters_disc || leaves_disc) || choices.decide(is_up);
     let (closed_in, closed_out) =
         if is_up { (start_is_closed, end_is_closed) } else { (end_is_closed, start_is_closed) };
-    let [near, far] = [b + enters, b + leaves];
+    let [near, far] = [b + enters + moved, b + leaves + moved];
     let is_near = (closed_in || !enters_disc) && choices.decide(near.is_above_zero());
     if !is_near && !((closed_out || !leaves_disc) && choices.decide(far.is_above_zero())) {
         return None;
     }
     let (t, from_foot, is_disc) = if is_near { (near, enters, enters_disc) } else { (far, leaves, leaves_disc) };
-    let normal = if is_disc {
-        if is_near == is_up { -axis } else { axis }
+    let (normal, off_unit) = if is_disc {
+        (if is_near == is_up { -axis } else { axis }, unit_error(length.interval().low))
     } else {
         let outward = (away + aside * from_foot).fence();
         let radius = (radius + from_foot * growth).fence();
         let normal = (outward - axis * (slope * radius)).fence();
         let square = normal.squared().fence();
-        if choices.decide(square.is_less(Number::known(LEAST_LENGTH.into()))) {
+        let off_unit = unit_error(square.interval().low.max(0.0).sqrt());
+        let normal = if choices.decide(square.is_less(Number::known(LEAST_LENGTH.into()))) {
             if choices.decide(slope.is_above_zero()) { -axis } else { axis }
         } else {
             let length = square.sqrt();
             normal.map(|c| (c / length).clamp(-1.0 - 1e-5, 1.0 + 1e-5))
-        }
+        };
+        (normal, off_unit)
     };
-    let above_zero = Interval { low: 0.0, high: f64::INFINITY };
     let normal = normal.fence().intervals();
-    Some(LegalConeHit { t: t.interval().intersection(above_zero), normal, place: [is_near, is_disc] })
+    Some(LegalConeHit { t: t.interval().intersection(ABOVE_ZERO), normal, off_unit, place: [is_near, is_disc] })
 }
 
 /// The crossing of the slab between the planes of the discs by a ray.

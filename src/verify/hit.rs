@@ -1,206 +1,144 @@
-//! The nearest hit of a ray: the set of answers that a conforming device may give. The checker has a separate search
-//! tree, which is in f64 and as simple as possible, because it judges results that other structures found.
+//! The nearest hit of a ray: the set of answers that a conforming device may give. The checker has search trees of its own
+//! (`tree.rs`).
 
 use glam::{DVec3, Vec3};
 
+use crate::geometry::cone::ConeInFrame;
 use crate::geometry::math::wide;
-use crate::parallel::{both, try_map};
 use crate::scene::SceneError;
+use crate::verify::cone::LegalConeHits;
 use crate::verify::rounding::{Interval, U};
 use crate::verify::sphere::{Line, Slack, SphereTest};
+use crate::verify::tree::{Body, Candidate, Tree, beside, entry, rounded};
 
-const LEAF: usize = 6;
+/// Across the ray, |f|² and r² together are off by less than 13 u |f| |l| (`sphere.rs`). Along it, a search among twenty
+/// million adversarial cases found 28 u.
+impl Body for [f32; 4] {
+    const BESIDE: f64 = 64.0 * U;
 
-/// Subtrees of up to this number of levels are built by one thread.
-const SMALL: u32 = 10;
+    fn corners(&self) -> [DVec3; 2] {
+        let [x, y, z, radius] = *self;
+        let center = wide([x, y, z]);
+        [center - f64::from(radius), center + f64::from(radius)]
+    }
 
-/// The distance from a box, relative to the longest vector to a sphere, at which a kernel may still find that the
-/// sphere in it is hit. Across the ray, |f|² and r² together are off by less than 13 u |f| |l| (`sphere.rs`). Along it,
-/// a search among twenty million adversarial cases found 28 u.
-const BESIDE: f64 = 64.0 * U;
+    fn middle(&self) -> Vec3 {
+        let [x, y, z, _] = *self;
+        Vec3::new(x, y, z)
+    }
 
-/// A sphere in the scene's frame.
-#[derive(Clone, Copy, Debug)]
-pub(super) struct Candidate {
-    pub(super) sphere: [f32; 4],
-    pub(super) id: u32,
+    fn may_be_hit(&self, Line { origin, direction, .. }: &Line, beside: f64) -> bool {
+        let [x, y, z, radius] = *self;
+        let to_center = wide([x, y, z]) - origin;
+        let foot = to_center - to_center.dot(*direction) * direction;
+        foot.length_squared() <= (f64::from(radius) + beside).powi(2)
+    }
 }
 
-#[derive(Clone, Copy, Debug)]
-struct Node {
-    low: Vec3,
-    high: Vec3,
+/// How far outside of a cone a kernel may still find a hit, relative to the larger radius. The angle between the axis and a
+/// ray that is hardly not parallel, 2⁻¹⁷ (`LEAST_SQUARE` in `cone.rs`), is known to within some 2⁻²³, and so is where around
+/// the axis the ray passes.
+const ASIDE: f64 = 1.0 / 16.0;
+
+/// Distances across the axis and along it are off by some roundings of the longest vector. A search among 1.6 million hits of
+/// devices that round in any way found 56, and as much of `ASIDE` (`tests/cpu/cone.rs`).
+impl Body for ConeInFrame {
+    const BESIDE: f64 = 256.0 * U;
+
+    fn corners(&self) -> [DVec3; 2] {
+        let aside = ASIDE * larger_radius(self);
+        let [low, high] = self.corners();
+        [low - aside, high + aside]
+    }
+
+    fn middle(&self) -> Vec3 {
+        0.5 * Vec3::from(self.start) + 0.5 * Vec3::from(self.end)
+    }
+
+    fn may_be_hit(&self, line: &Line, beside: f64) -> bool {
+        around(self, line, beside).is_some()
+    }
 }
 
-/// A tree of boxes in which each node halves its spheres. The left child of a node comes right after it, and the right
-/// child after the whole left subtree, so that only boxes are stored.
+fn larger_radius(cone: &ConeInFrame) -> f64 {
+    let [first, second] = cone.radii();
+    first.max(second)
+}
+
+/// The distances at which a ray is in the cylinder around a cone that is widened by `beside`; `None` if it passes by.
+fn around(cone: &ConeInFrame, Line { origin, direction, .. }: &Line, beside: f64) -> Option<Interval> {
+    let [start, end] = cone.ends();
+    let (span, middle) = (end - start, 0.5 * (start + end));
+    let (half, radius) = (0.5 * span.length() + beside, (1.0 + ASIDE) * larger_radius(cone) + beside);
+    let axis = span / span.length();
+    let foot = (middle - origin).dot(*direction);
+    let from_middle = origin + foot * direction - middle;
+    let [height, rise] = [from_middle, *direction].map(|v| v.dot(axis));
+    let [away, aside] = [from_middle - height * axis, direction - rise * axis];
+    // Numbers that are too small to divide by lead far away, as they should.
+    let rise = rise.abs().max(LEAST).copysign(rise);
+    let square = aside.length_squared().max(LEAST);
+    let towards = -away.dot(aside);
+    let root = (towards * towards - square * (away.length_squared() - radius * radius)).sqrt();
+    let side = Interval { low: (towards - root) / square, high: (towards + root) / square };
+    let slab = Interval::between((-half - height) / rise, (half - height) / rise, 0.0);
+    let Interval { low, high } = side.intersection(slab);
+    // This is also false for the root of a negative number, which is NaN.
+    let is_crossed = !root.is_nan() && low <= high && foot + high > 0.0;
+    is_crossed.then_some(Interval { low: foot + low, high: foot + high })
+}
+
+/// The least number that is divided by.
+const LEAST: f64 = 1e-60;
+
+/// The shapes of a scene, for searches.
 #[derive(Debug)]
 pub(super) struct Candidates {
-    items: Vec<Candidate>,
-    nodes: Vec<Node>,
-    levels: u32,
-}
-
-/// A node during the traversal, and the range of spheres below it.
-#[derive(Clone, Copy, Debug)]
-struct Visit {
-    node: usize,
-    level: u32,
-    start: usize,
-    end: usize,
-    entry: f64,
+    pub(super) spheres: Tree<[f32; 4]>,
+    pub(super) cones: Tree<ConeInFrame>,
+    /// Id of the first cone, if there are cones.
+    pub(super) first_cone: Option<u32>,
+    /// The corners of the box of all shapes.
+    bounds: [Vec3; 2],
 }
 
 impl Candidates {
-    pub(super) fn new(spheres: &[[f32; 4]]) -> Result<Self, SceneError> {
-        let memory = |_| SceneError::Memory { count: spheres.len() };
-        let item = |i: usize| Candidate { sphere: spheres[i], id: i as u32 };
-        let mut items = try_map(spheres.len(), item).map_err(memory)?;
-        let levels = items.len().div_ceil(LEAF).next_power_of_two().trailing_zeros();
-        let empty = Node { low: Vec3::INFINITY, high: Vec3::NEG_INFINITY };
-        let mut nodes = try_map((2 << levels) - 1, |_| empty).map_err(memory)?;
-        build(&mut items, &mut nodes, levels);
-        Ok(Self { items, nodes, levels })
+    pub(super) fn new(spheres: &[[f32; 4]], cones: &[ConeInFrame]) -> Result<Self, SceneError> {
+        let join = |[low, high]: [Vec3; 2], [other_low, other_high]: [DVec3; 2]| {
+            [low.min(rounded(other_low, f32::next_down)), high.max(rounded(other_high, f32::next_up))]
+        };
+        let tree = Tree::new(spheres, 0)?;
+        Ok(Self {
+            bounds: cones.iter().map(ConeInFrame::corners).fold(tree.bounds(), join),
+            spheres: tree,
+            cones: Tree::new(cones, spheres.len())?,
+            first_cone: (!cones.is_empty()).then_some(spheres.len() as u32),
+        })
     }
 
+    /// The corners of the box of all shapes.
     pub(super) fn bounds(&self) -> (Vec3, Vec3) {
-        (self.nodes[0].low, self.nodes[0].high)
-    }
-
-    /// The length of the longest vector from a point to a sphere's centre.
-    pub(super) fn longest_from(&self, point: DVec3) -> f64 {
-        let Node { low, high } = self.nodes[0];
-        let low = (low.as_dvec3() - point).abs();
-        low.max((high.as_dvec3() - point).abs()).length()
-    }
-
-    /// Calls `offer` for every sphere that a ray, displaced by up to `moved`, may hit before `nearest`. The return
-    /// value of `offer` is the new `nearest`.
-    pub(super) fn visit(&self, line: &Line, moved: f64, nearest: f64, offer: impl FnMut(&Candidate) -> f64) {
-        let longest = self.longest_from(line.origin) + moved;
-        self.visit_beside(line, (BESIDE + 2.0 * line.bend) * longest + moved, nearest, offer);
-    }
-
-    /// Calls `offer` for every sphere that comes within `beside` of a ray before `nearest`, as [`Candidates::visit`] does.
-    pub(super) fn visit_beside(
-        &self,
-        line: &Line,
-        beside: f64,
-        nearest: f64,
-        mut offer: impl FnMut(&Candidate) -> f64,
-    ) {
-        let slab = Slab { line, inverse: line.inverse(), beside };
-        let entry = slab.entry(&self.nodes[0]);
-        let root = Visit { node: 0, level: self.levels, start: 0, end: self.items.len(), entry };
-        // The entry of a box that is not hit is infinite, which is farther than any limit.
-        self.visit_node(&slab, root, &mut nearest.min(f64::MAX), &mut offer);
-    }
-
-    /// Visits a node. Calls are nested at most 32 deep, because a tree has no more levels than an id has bits.
-    fn visit_node(&self, slab: &Slab<'_>, visit: Visit, nearest: &mut f64, offer: &mut impl FnMut(&Candidate) -> f64) {
-        let Visit { level, start, end, entry, .. } = visit;
-        if entry > *nearest || start == end {
-            // Nothing nearer can be found there.
-        } else if level == 0 {
-            for item in self.items[start..end].iter().filter(|item| slab.may_hit(item)) {
-                *nearest = offer(item).min(f64::MAX);
-            }
-        } else {
-            for child in self.children(slab, visit) {
-                self.visit_node(slab, child, nearest, offer);
-            }
-        }
-    }
-
-    /// Both children, the nearer one first.
-    fn children(&self, slab: &Slab<'_>, Visit { node, level, start, end, .. }: Visit) -> [Visit; 2] {
-        let (middle, level) = (start + (end - start) / 2, level - 1);
-        let (left, right) = (node + 1, node + (2 << level));
-        let left_entry = slab.entry(&self.nodes[left]);
-        let right_entry = slab.entry(&self.nodes[right]);
-        let left = Visit { node: left, level, start, end: middle, entry: left_entry };
-        let right = Visit { node: right, level, start: middle, end, entry: right_entry };
-        if right_entry < left_entry { [right, left] } else { [left, right] }
-    }
-}
-
-/// Orders the spheres, and computes the boxes of a subtree whose root is the first node.
-fn build(items: &mut [Candidate], nodes: &mut [Node], level: u32) {
-    if level == 0 {
-        for Candidate { sphere: [x, y, z, radius], .. } in items {
-            let center = wide([*x, *y, *z]);
-            let radius = f64::from(*radius);
-            nodes[0].low = nodes[0].low.min(rounded(center - radius, f32::next_down));
-            nodes[0].high = nodes[0].high.max(rounded(center + radius, f32::next_up));
-        }
-        return;
-    }
-    let axis = longest_axis(items);
-    let middle = items.len() / 2;
-    if middle > 0 {
-        items.select_nth_unstable_by(middle, |a, b| a.sphere[axis].total_cmp(&b.sphere[axis]));
-    }
-    let (left_items, right_items) = items.split_at_mut(middle);
-    let (root, below) = nodes.split_at_mut(1);
-    let (left, right) = below.split_at_mut((2 << (level - 1)) - 1);
-    both(level > SMALL, || build(left_items, left, level - 1), || build(right_items, right, level - 1));
-    root[0] = Node { low: left[0].low.min(right[0].low), high: left[0].high.max(right[0].high) };
-}
-
-/// Converts to f32 and moves each component one step outwards.
-fn rounded(v: DVec3, beyond: fn(f32) -> f32) -> Vec3 {
-    Vec3::from(v.as_vec3().to_array().map(beyond))
-}
-
-/// The axis along which the centres are farthest apart.
-fn longest_axis(items: &[Candidate]) -> usize {
-    let (mut low, mut high) = (Vec3::INFINITY, Vec3::NEG_INFINITY);
-    for Candidate { sphere: [x, y, z, _], .. } in items {
-        let center = Vec3::new(*x, *y, *z);
-        (low, high) = (low.min(center), high.max(center));
-    }
-    (high - low).max_position()
-}
-
-struct Slab<'a> {
-    line: &'a Line,
-    inverse: DVec3,
-    beside: f64,
-}
-
-impl Slab<'_> {
-    /// Whether the ray comes close enough to the sphere that a kernel may find a hit.
-    fn may_hit(&self, Candidate { sphere: [x, y, z, radius], .. }: &Candidate) -> bool {
-        let Line { origin, direction, .. } = *self.line;
-        let to_center = wide([*x, *y, *z]) - origin;
-        let foot = to_center - to_center.dot(direction) * direction;
-        foot.length_squared() <= (f64::from(*radius) + self.beside).powi(2)
-    }
-
-    /// The distance at which the ray enters the box, widened by `beside` on all sides; infinity if it misses.
-    fn entry(&self, node: &Node) -> f64 {
-        let low = (node.low.as_dvec3() - self.beside - self.line.origin) * self.inverse;
-        let high = (node.high.as_dvec3() + self.beside - self.line.origin) * self.inverse;
-        let entry = low.min(high).max_element().max(0.0);
-        let exit = low.max(high).min_element();
-        if entry <= exit { entry } else { f64::INFINITY }
+        let [low, high] = self.bounds;
+        (low, high)
     }
 }
 
 /// All legal answers to a ray. Every answer that a device that conforms to WGSL may give, however it rounds, is one.
 ///
-/// A hit is legal if its sphere is listed, and its distance is legal for this sphere and at most `limit`.
+/// A hit is legal if its shape is listed, and its distance is legal for this shape and at most `limit`.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct LegalHits {
-    /// The spheres that may be the nearest, in no particular order.
+    /// The spheres and cones that may be the nearest, in no particular order.
     pub spheres: Vec<LegalHit>,
-    /// An upper limit for the distance: a sphere is certainly hit at or before it. Infinity if no hit is certain.
+    /// An upper limit for the distance: a shape is certainly hit at or before it. Infinity if no hit is certain.
     pub limit: f64,
     /// Whether a miss is legal.
     pub miss: bool,
+    /// Id of the first cone, if the scene has cones.
+    pub(super) first_cone: Option<u32>,
 }
 
-/// A sphere that may be the nearest.
+/// A shape that may be the nearest.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct LegalHit {
     /// Index in input order.
@@ -209,7 +147,14 @@ pub struct LegalHit {
     pub near: Option<Interval>,
     /// Legal distances to the far side, if the ray may start inside.
     pub far: Option<Interval>,
-    pub(super) sphere: [u32; 4],
+    /// The numbers of the shape, which are the same for equal ones.
+    pub(super) key: [u32; 8],
+}
+
+/// The key of a sphere. It is none of a cone, whose numbers are finite.
+pub(super) fn key_of_sphere(sphere: [f32; 4]) -> [u32; 8] {
+    let [x, y, z, radius] = sphere.map(f32::to_bits);
+    [x, y, z, radius, u32::MAX, u32::MAX, u32::MAX, u32::MAX]
 }
 
 impl LegalHit {
@@ -272,19 +217,24 @@ impl LegalHits {
         slack: Slack,
         is_left_out: impl Fn([f32; 4]) -> bool,
     ) {
-        candidates.visit(line, slack.across + slack.along, self.limit, |candidate| {
-            if is_left_out(candidate.sphere) {
-                return self.limit;
+        let moved = slack.across + slack.along;
+        candidates.spheres.visit(line, moved, self.limit, |candidate| {
+            if !is_left_out(candidate.shape) {
+                self.add(legal_hit(candidate, line, slack));
             }
-            self.add(candidate, line, slack);
             self.limit
         });
+        candidates.cones.visit(line, moved, self.limit, |candidate| {
+            self.add(legal_cone_hit(candidate, line, slack));
+            self.limit
+        });
+        self.first_cone = candidates.first_cone;
         self.drop_hidden();
     }
 
-    /// Adds the hit of a sphere, if there is one that may be nearer than known hits.
-    fn add(&mut self, candidate: &Candidate, line: &Line, slack: Slack) {
-        if let Some((hit, may_miss)) = legal_hit(candidate, line, slack) {
+    /// Adds a hit that may be nearer than known hits, and whether a miss is legal too.
+    fn add(&mut self, found: Option<(LegalHit, bool)>) {
+        if let Some((hit, may_miss)) = found {
             if hit.lowest() <= self.limit {
                 self.spheres.push(hit);
             }
@@ -295,24 +245,46 @@ impl LegalHits {
         }
     }
 
-    /// Drops spheres that others certainly hide. Among spheres that are equal to the bit, keeps the one with the
-    /// smallest id. Kernels find the same distance for equal spheres, to the bit, because they share one sphere test,
+    /// Drops shapes that others certainly hide. Among shapes that are equal to the bit, keeps the one with the
+    /// smallest id. Kernels find the same distance for equal shapes, to the bit, because they share one test,
     /// and at equal distances the smaller id wins. This is an assumption: WGSL does not guarantee that two kernels,
     /// such as the kernels of two bricks, compile the test in the same way.
     fn drop_hidden(&mut self) {
         self.spheres.retain(|hit| hit.lowest() <= self.limit);
         if self.spheres.len() > 1 {
-            self.spheres.sort_unstable_by_key(|hit| (hit.sphere, hit.id));
-            self.spheres.dedup_by_key(|hit| hit.sphere);
+            self.spheres.sort_unstable_by_key(|hit| (hit.key, hit.id));
+            self.spheres.dedup_by_key(|hit| hit.key);
         }
     }
 }
 
-pub(super) fn legal_hit(Candidate { sphere, id }: &Candidate, line: &Line, slack: Slack) -> Option<(LegalHit, bool)> {
+/// The legal hits of a sphere, and whether a miss is legal.
+pub(super) fn legal_hit(
+    Candidate { shape: sphere, id }: &Candidate<[f32; 4]>,
+    line: &Line,
+    slack: Slack,
+) -> Option<(LegalHit, bool)> {
     let test = SphereTest::new(line, *sphere, slack)?;
     let roots = test.roots();
-    let hit = LegalHit { id: *id, near: roots.near, far: roots.far, sphere: sphere.map(f32::to_bits) };
+    let hit = LegalHit { id: *id, near: roots.near, far: roots.far, key: key_of_sphere(*sphere) };
     roots.near.or(roots.far).map(|_| (hit, roots.may_miss))
+}
+
+/// The legal hits of a cone, and whether a miss is legal.
+fn legal_cone_hit(
+    Candidate { shape: cone, id }: &Candidate<ConeInFrame>,
+    line: &Line,
+    slack: Slack,
+) -> Option<(LegalHit, bool)> {
+    let corners = Body::corners(cone);
+    let beside = beside::<ConeInFrame>(line, corners, slack.across + slack.along);
+    let mut within = around(cone, line, beside)?;
+    within.low = within.low.max(entry(line, corners, beside));
+    let legal = LegalConeHits::of(line, slack, cone);
+    let side = |is_near| legal.distances(is_near).map(|side| side.intersection(within));
+    let [near, far] = [true, false].map(|is_near| side(is_near).filter(|side| side.low <= side.high));
+    let hit = LegalHit { id: *id, near, far, key: bytemuck::cast(*cone) };
+    near.or(far).map(|_| (hit, legal.may_miss))
 }
 
 #[cfg(test)]
@@ -320,14 +292,19 @@ mod tests {
     use fastrand::Rng;
 
     use super::*;
+    use crate::recording::cone_rays::{RayAndCone, rays_and_cones};
 
-    /// The legal hits without a search tree: every sphere is tested.
-    fn without_search(spheres: &[[f32; 4]], line: &Line) -> LegalHits {
+    /// The legal hits without a search tree: every shape is tested.
+    fn without_search(spheres: &[[f32; 4]], cones: &[ConeInFrame], line: &Line) -> LegalHits {
         let mut legal = LegalHits::default();
         legal.clear();
-        for (sphere, id) in spheres.iter().zip(0..) {
-            legal.add(&Candidate { sphere: *sphere, id }, line, Slack::default());
+        for (shape, id) in spheres.iter().zip(0..) {
+            legal.add(legal_hit(&Candidate { shape: *shape, id }, line, Slack::default()));
         }
+        for (shape, id) in cones.iter().zip(spheres.len() as u32..) {
+            legal.add(legal_cone_hit(&Candidate { shape: *shape, id }, line, Slack::default()));
+        }
+        legal.first_cone = (!cones.is_empty()).then_some(spheres.len() as u32);
         legal.drop_hidden();
         legal
     }
@@ -364,7 +341,7 @@ mod tests {
         for round in 0..60 {
             let scale = 2_f32.powi(random.i32(-50..51));
             let spheres = spheres(&mut random, scale, 1 << (round % 10));
-            let candidates = Candidates::new(&spheres).unwrap();
+            let candidates = Candidates::new(&spheres, &[]).unwrap();
             for _ in 0..300 {
                 // Rays near a silhouette. Half of them are at the end of a box, along its side.
                 let [x, y, z, r] = spheres[random.usize(0..spheres.len())];
@@ -380,10 +357,32 @@ mod tests {
                 let line = Line::new(origin.to_array(), direction.to_array());
                 let mut found = LegalHits::default();
                 found.find(&candidates, &line);
-                assert_eq!(in_order(found.clone()), in_order(without_search(&spheres, &line)));
+                assert_eq!(in_order(found.clone()), in_order(without_search(&spheres, &[], &line)));
                 undecided += u32::from(found.count() > 1);
             }
         }
         assert!(undecided > 1000, "{undecided}");
+    }
+
+    #[test]
+    fn the_search_loses_no_cone() {
+        let mut random = Rng::with_seed(3);
+        let (mut undecided, mut of_cones) = (0, 0);
+        let inputs = rays_and_cones(16_000);
+        for (round, inputs) in inputs.chunks(400).enumerate() {
+            // The cones of some inputs only, so that all others are met by rays that go elsewhere.
+            let cones: Vec<ConeInFrame> = inputs[..1 << (round % 9)].iter().map(|input| input.cone).collect();
+            let spheres = spheres(&mut random, 1.0, 1 + round % 30);
+            let candidates = Candidates::new(&spheres, &cones).unwrap();
+            for RayAndCone { origin, direction, .. } in inputs {
+                let line = Line::new(*origin, *direction);
+                let mut found = LegalHits::default();
+                found.find(&candidates, &line);
+                assert_eq!(in_order(found.clone()), in_order(without_search(&spheres, &cones, &line)));
+                undecided += u32::from(found.count() > 1);
+                of_cones += u32::from(found.spheres.iter().any(|hit| Some(hit.id) >= found.first_cone));
+            }
+        }
+        assert!(undecided > 200 && of_cones > 8000, "{undecided} {of_cones}");
     }
 }

@@ -48,6 +48,7 @@ pub mod finished;
 mod hit;
 pub(crate) mod lit;
 mod lit_check;
+mod normals;
 mod number;
 mod paths;
 #[cfg(feature = "run-file")]
@@ -57,6 +58,7 @@ mod rounding;
 pub mod run_file;
 mod sphere;
 mod studio;
+mod tree;
 mod uploaded;
 mod witness;
 pub mod written;

@@ -168,7 +168,7 @@ fn unescaped(text: &str) -> String {
     result + rest
 }
 
-/// The digest of a scene's data: origin, spheres, colours and surfaces, in hexadecimal digits.
+/// The digest of a scene's data: origin, shapes, colours and surfaces, in hexadecimal digits.
 #[must_use]
 pub fn scene_digest(scene: &Scene) -> String {
     let mut digest = Sha256::new();
@@ -176,6 +176,11 @@ pub fn scene_digest(scene: &Scene) -> String {
     digest.update(bytes_of(&scene.origin().to_array()));
     for (id, sphere) in (0..).zip(scene.spheres()) {
         digest.update(bytes_of(sphere));
+        digest.update(bytes_of(&scene.color(id).to_array()));
+    }
+    for (id, cone) in (scene.len() as u32..).zip(scene.cones()) {
+        digest.update("cone");
+        digest.update(bytes_of(cone));
         digest.update(bytes_of(&scene.color(id).to_array()));
     }
     let appearance = scene.appearance();

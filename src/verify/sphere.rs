@@ -239,44 +239,6 @@ impl SphereTest {
     }
 }
 
-/// The unit normals that a device may write: all normals within a distance of one of these two.
-#[derive(Clone, Copy, Debug, Default)]
-pub(super) struct LegalNormals {
-    sides: [Option<(DVec3, f64)>; 2],
-}
-
-impl LegalNormals {
-    /// The legal normals of a sphere for a ray, or for a ray within `slack` of it.
-    pub(super) fn new(line: &Line, sphere: [f32; 4], slack: Slack) -> Self {
-        let Some(test) = SphereTest::new(line, sphere, slack) else {
-            return Self::default();
-        };
-        let side = |is_behind: bool| {
-            let chord = Chord { half: test.half, exact: test.exact_half(), is_behind };
-            normal_at(&test, line, chord, sphere[3], slack)
-        };
-        Self { sides: [test.may_start_outside().then(|| side(false)), test.may_start_inside().then(|| side(true))] }
-    }
-
-    /// The distance of a normal from the nearest exact normal, relative to its bound. Above 1 it is not legal.
-    pub(super) fn fraction(&self, normal: DVec3) -> f64 {
-        let fractions = self.sides.iter().flatten().map(|(exact, error)| (normal - exact).length() / error);
-        // `f64::min` would ignore NaN.
-        fractions.reduce(|a, b| if a < b { a } else { b }).unwrap_or(f64::INFINITY)
-    }
-
-    /// The exact normal and the bound of its error, if there is only one.
-    pub(super) fn only(&self) -> Option<(DVec3, f64)> {
-        let mut all = self.crossings();
-        all.next().filter(|_| all.next().is_none())
-    }
-
-    /// The exact normals, and the bounds of their errors.
-    pub(super) fn crossings(&self) -> impl Iterator<Item = (DVec3, f64)> {
-        self.sides.into_iter().flatten()
-    }
-}
-
 /// Half of the chord that a sphere cuts out of a ray, and whether the hit is at the far end.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Chord {

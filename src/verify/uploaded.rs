@@ -13,13 +13,13 @@ use crate::verify::rounding::{Interval, U};
 /// The expected margin of the box, relative to its diagonal. A device may have a larger or a smaller margin.
 const BOX_MARGIN: f32 = 1.0 / (1 << 17) as f32;
 
-/// The box of a device around spheres that lie between two corners.
+/// The box of a device around shapes that lie between two corners.
 pub(super) fn expected_box(min: Vec3, max: Vec3) -> [Vec3; 2] {
     let margin = Vec3::splat(BOX_MARGIN * (max - min).length());
     [min - margin, max + margin]
 }
 
-/// The inputs of a device for a camera, if the spheres lie between two corners. If the camera has a plane, rays
+/// The inputs of a device for a camera, if the shapes lie between two corners. If the camera has a plane, rays
 /// start at the depth of the nearest corner of the scene's box.
 pub(super) fn expected_view(camera: &RequestedCamera, scene_origin: DVec3, (min, max): (Vec3, Vec3)) -> UploadedView {
     let narrow = |v: DVec3| v.as_vec3().to_array();
@@ -48,7 +48,7 @@ fn nearest(camera: &RequestedCamera, origin: DVec3, [low, high]: [DVec3; 2]) -> 
     if camera.kind.is_linear() { corners.fold(f64::INFINITY, f64::min).max(0.0) } else { 0.0 }
 }
 
-/// The smallest margin between the spheres and the box to which rays are moved, relative to the box's diagonal: twice
+/// The smallest margin between the shapes and the box to which rays are moved, relative to the box's diagonal: twice
 /// the largest rounding error of a ray's entry point.
 pub(super) const LEAST_MARGIN: f64 = 16.0 * U;
 
@@ -129,15 +129,15 @@ pub(super) fn check_view(
         )));
     }
     if !scene.is_empty() {
-        let (spheres_low, spheres_high) = candidates.bounds();
+        let (shapes_low, shapes_high) = candidates.bounds();
         let margin = LEAST_MARGIN * (high - low).length();
         let holds =
-            (low + margin).cmple(spheres_low.as_dvec3()).all() && (high - margin).cmpge(spheres_high.as_dvec3()).all();
+            (low + margin).cmple(shapes_low.as_dvec3()).all() && (high - margin).cmpge(shapes_high.as_dvec3()).all();
         if !holds {
             let found = [view.scene_min, view.scene_max];
-            let spheres = [spheres_low.to_array(), spheres_high.to_array()];
+            let shapes = [shapes_low.to_array(), shapes_high.to_array()];
             return Err(UploadError(format!(
-                "the scene's box on the device, {found:?}, does not contain the box of the spheres, {spheres:?}"
+                "the scene's box on the device, {found:?}, does not contain the box of its shapes, {shapes:?}"
             )));
         }
     }

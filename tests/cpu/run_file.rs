@@ -5,6 +5,8 @@ use std::collections::BTreeMap;
 use pinhole::camera::film::YAxis;
 use pinhole::camera::{Camera, OrthographicCamera, PinholeCamera, Pose};
 use pinhole::image::NO_ID;
+use pinhole::internals::ConeInFrame;
+use pinhole::scene::cone::{Caps, Cone};
 use pinhole::verify::run_file::{self, Provenance, RunFileError};
 use pinhole::verify::{PlainRender, Recording, RequestedCamera, TracedPixel, TracedRay};
 use pinhole::{
@@ -77,6 +79,43 @@ fn small() -> Vec<u8> {
     written(&scene, &recording)
 }
 
+/// A run file of a sphere and three cones in two colours. The second cone is a tube, and the third one is pointed.
+fn with_cones() -> Vec<u8> {
+    let cones = [
+        Cone::cylinder([0.0; 3], [0.0, 0.0, 1.0], 0.5),
+        Cone::cylinder([2.0, 0.0, 0.0], [2.0, 1.0, 0.0], 0.25).with_caps(Caps::None),
+        Cone::new([-1.0, 0.0, 0.0], [-1.0, 3.0, 0.0], [0.5, 0.0]).with_caps(Caps::Second),
+    ];
+    let colors = Colors::distinct(&[LinearRgb::WHITE, LinearRgb::WHITE, LinearRgb::WHITE, LinearRgb::BLACK]);
+    let spheres = SphereArray::F32(vec![[0.0, 2.0, 0.0, 1.0]]);
+    let scene = Scene::from_shapes(spheres, &cones, colors.into()).unwrap();
+    let camera = OrthographicCamera::new(pose(), [4.0, 4.0]).unwrap();
+    written(&scene, &made(&scene, &camera, Film::new(2, 1).unwrap()))
+}
+
+#[test]
+fn cones_are_read_and_checked() {
+    let bytes = with_cones();
+    let run = run_file::read(&bytes).unwrap();
+    assert_eq!((run.scene.len(), run.scene.shape_count()), (1, 4));
+    let closed = |cone: &ConeInFrame| [cone.first_radius, cone.second_radius].map(f32::is_sign_positive);
+    let closed: Vec<_> = run.scene.cones().iter().map(closed).collect();
+    assert_eq!(closed, [[true; 2], [false; 2], [false, true]]);
+    assert_eq!([1, 2, 3].map(|id| run.scene.color(id)), [LinearRgb::WHITE, LinearRgb::WHITE, LinearRgb::BLACK]);
+    assert_eq!(run.scene.bounds().map(|bounds| bounds.max().y), Some(3.0));
+    for (place, number, words) in [
+        (0, f32::NAN, "cone 0: its start is [NaN, 0.0, 0.0]"),
+        (3, f32::INFINITY, "cone 0: its radius is inf"),
+        (6, 0.0, "cone 0: it has no length"),
+        (16 + 3, 1e-9, "cone 2: its length"),
+        (16 + 3, 0.0, "cone 2: both radii are 0"),
+        (16 + 7, -1.0, "`scene_sha256` is not the digest of the shapes"),
+    ] {
+        contradicts(&with_numbers(&bytes, "cones", 4 * place, &number.to_le_bytes()), words);
+    }
+    contradicts(&with_header(&bytes, "[3,8]", "[4,6]"), "the array `cones` is F32 [4, 6]; it must be F32 [4, 8]");
+}
+
 /// A run file with one pixel, and no spheres.
 fn smallest() -> Vec<u8> {
     let scene = Scene::new(&[]).unwrap();
@@ -131,7 +170,7 @@ fn contradicts(bytes: &[u8], words: &str) {
 
 #[test]
 fn what_is_read_is_what_was_written_to_the_bit() {
-    for bytes in [small(), smallest()] {
+    for bytes in [small(), smallest(), with_cones()] {
         let run = run_file::read(&bytes).unwrap();
         assert_eq!(run.provenance, provenance());
         // Compares the whole file. NaN equals nothing.
@@ -235,7 +274,7 @@ fn what_scenes_cameras_and_settings_refuse() {
         ("spheres", 12, &0_f32.to_le_bytes()[..], "`scene_sha256`|sphere 0: its radius is 0.0"),
         ("spheres", 16, &nan, "sphere 1: its center"),
         ("scene_origin", 0, &f64::INFINITY.to_le_bytes(), "the scene: its origin"),
-        ("spheres", 0, &7_f32.to_le_bytes(), "`scene_sha256` is not the digest of the spheres"),
+        ("spheres", 0, &7_f32.to_le_bytes(), "`scene_sha256` is not the digest of the shapes"),
         (
             "color_index",
             8,

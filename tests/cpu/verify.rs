@@ -10,8 +10,9 @@ use pinhole::camera::{
 use pinhole::glam::DVec3;
 use pinhole::image::NO_ID;
 use pinhole::render::PrimarySettings;
+use pinhole::scene::cone::{Caps, Cone};
 use pinhole::verify::{Certificate, Checker, Outcome, PlainRender, Recording, RequestedCamera, UploadedView};
-use pinhole::{Film, Image, LayerSet, Scene, View};
+use pinhole::{Film, Image, LayerSet, LinearRgb, Scene, SphereArray, View};
 
 use crate::scene::colored;
 use crate::support::legal_device::{Habit, LegalDevice};
@@ -171,6 +172,46 @@ fn no_picture_of_a_conforming_device_is_accused() {
         }
     }
     assert!(pixels > 400_000, "{pixels}");
+}
+
+/// Spheres between cylinders, needles, flat discs and pointed cones, with closed and open ends, at any scale.
+pub(crate) fn with_cones(seed: u64, scale: f64, length: [f64; 2], radius: [f64; 2]) -> Scene {
+    let mut random = fastrand::Rng::with_seed(seed);
+    let cones: Vec<Cone> = (0..30)
+        .map(|index| {
+            let mut vector = |size: f64| DVec3::from([0; 3].map(|_| scale * size * (random.f64() - 0.5)));
+            let (start, way) = (vector(2.0), vector(1.0));
+            let mut between = |[low, high]: [f64; 2]| low * (high / low).powf(random.f64());
+            let (length, first) = (between(length), scale * between(radius));
+            let way = if index % 5 == 0 { DVec3::AXES[index % 3] } else { way.normalize_or(DVec3::X) };
+            let end = start + scale * length * way;
+            let second = [first, 0.0, 0.5 * first][index % 3];
+            let caps = [Caps::Both, Caps::None, Caps::First, Caps::Second][index % 4];
+            Cone::new(start.to_array(), end.to_array(), [first, second]).with_caps(caps)
+        })
+        .collect();
+    let spheres = spheres::scaled(&spheres::random(12, seed, |rng| 0.02 + 0.1 * rng.f32()), scale as f32);
+    let array = SphereArray::F32(spheres);
+    Scene::from_shapes(array, &cones, LinearRgb::new([0.9, 0.5, 0.2]).unwrap().into()).unwrap()
+}
+
+#[test]
+fn no_picture_with_cones_is_accused() {
+    let mut cones = 0;
+    for (seed, scale, length, radius) in
+        [(1, 1.0, [0.3, 1.0], [0.05, 0.2]), (2, 1e6, [0.5, 2.0], [1e-4, 0.02]), (3, 1e-6, [1e-4, 0.1], [0.1, 0.4])]
+    {
+        let scene = with_cones(seed, scale, length, radius);
+        for camera in cameras(&scene) {
+            let film = Film::new(41, 33).unwrap();
+            assert_never_accused(&seed.to_string(), &scene, camera.as_ref(), film);
+            let mut device = LegalDevice { habit: Habit::Nearest, random: fastrand::Rng::with_seed(0) };
+            let recording = device.record(&scene, &given(&scene, camera.as_ref(), film));
+            cones +=
+                recording.pixels.iter().filter(|pixel| pixel.id != NO_ID && pixel.id >= scene.len() as u32).count();
+        }
+    }
+    assert!(cones > 5000, "{cones}");
 }
 
 /// A flat box with rays along its wall. Where these enter depends on the last bit of their direction.

@@ -6,6 +6,7 @@ use pinhole::camera::{Camera, FisheyeCamera, OrthographicCamera, PinholeCamera, 
 use pinhole::gpu::{Headless, PictureRequest, Wait};
 use pinhole::image::NO_ID;
 use pinhole::render::Studio;
+use pinhole::verify::Outcome;
 use pinhole::{Film, Image, Integrator, LayerSet, RenderSettings, Scene, View, cpu};
 
 use crate::support::cones::mixed;
@@ -15,6 +16,7 @@ pub(crate) fn trials() -> Vec<Trial> {
     vec![
         trial("cones::pictures_agree_with_the_reference", agree),
         trial("cones::lists_and_trees_agree", structures),
+        trial("cones::pictures_are_proved", proved),
         trial("cones::smooth_pictures_agree_with_the_reference", smooth),
     ]
 }
@@ -71,6 +73,24 @@ fn agree(headless: &'static Headless) {
         assert!(hits > 1000, "{spheres} spheres, {cones} cones: {hits}");
         assert!(others * 500 < film.pixel_count() as u32 * 4, "{spheres} spheres, {cones} cones: {others}");
     }
+}
+
+/// The checker accuses no picture, and leaves few answers open.
+fn proved(headless: &'static Headless) {
+    let settings = RenderSettings::default();
+    let (mut open, mut all) = (0, 0);
+    for (spheres, cones, size) in [(200, 400, 0.2), (0, 300, 0.3), (3000, 2000, 0.05), (1, 1, 0.6)] {
+        let scene = mixed(spheres, cones, size, 11);
+        for camera in cameras() {
+            let view = View::new(camera.as_ref(), Film::new(128, 128).unwrap());
+            let certificate = headless.verify(&scene, &view, &settings).wait().unwrap();
+            assert!(certificate.outcome() != Outcome::Violated, "{spheres} spheres, {cones} cones: {certificate}");
+            open += certificate.undecided();
+            all += certificate.verdicts.len();
+        }
+    }
+    println!("{open} of {all} pixels are open");
+    assert!(open * 200 < all, "{open} of {all} are open");
 }
 
 /// Pictures by different structures are the same, to the bit.

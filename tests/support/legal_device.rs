@@ -4,7 +4,7 @@ use fastrand::Rng;
 use pinhole::camera::CameraKind;
 use pinhole::camera::film::YAxis;
 use pinhole::image::{NO_ID, Pixel};
-use pinhole::internals::NO_HIT;
+use pinhole::internals::{ConeInFrame, NO_HIT};
 use pinhole::verify::{Recording, TracedPixel, TracedRay, UploadedView};
 use pinhole::{Film, Image, Scene};
 
@@ -152,6 +152,115 @@ impl LegalDevice {
     }
 }
 
+/// A distance that no ray reaches, `FAR` of shaders/scene/cone_side.wgsl.
+const FAR: f32 = 1e30;
+
+impl LegalDevice {
+    fn dot_of(&mut self, a: [f32; 3], b: [f32; 3]) -> f32 {
+        self.dot(&mut [0, 1, 2].map(|k| (a[k], b[k])))
+    }
+
+    /// The distance and the normal of a hit: does what `intersect` and `cone_normal` of shaders/scene/cone.wgsl do.
+    pub(crate) fn cone(&mut self, ray: &TracedRay, cone: &ConeInFrame) -> (f32, [f32; 3]) {
+        let (origin, d) = (ray.origin, ray.direction);
+        let [first, second] = [cone.first_radius, cone.second_radius].map(f32::abs);
+        let span = self.vector(|this, k| this.add(cone.end[k], -cone.start[k]));
+        let square = self.dot_of(span, span);
+        let length = self.sqrt(square.max(1e-37));
+        let axis = self.vector(|this, k| this.divide(span[k], length));
+        let widening = self.add(second, -first);
+        let slope = self.divide(widening, length);
+        let to_middle = self.vector(|this, k| {
+            let to_start = this.add(cone.start[k], -origin[k]);
+            this.mul_add(0.5, span[k], to_start)
+        });
+        let b = self.dot_of(to_middle, d);
+        let foot = self.vector(|this, k| this.mul_add(b, d[k], -to_middle[k]));
+        let (height, rise) = (self.dot_of(foot, axis), self.dot_of(d, axis));
+        let away = self.vector(|this, k| this.mul_add(-height, axis[k], foot[k]));
+        let aside = self.vector(|this, k| this.mul_add(-rise, axis[k], d[k]));
+        let both = self.add(first, second);
+        let radius = self.mul_add(slope, height, 0.5 * both);
+        let growth = self.mul(slope, rise);
+
+        let across = self.vector(|this, k| {
+            let (i, j) = ((k + 1) % 3, (k + 2) % 3);
+            this.dot(&mut [(d[i], axis[j]), (-d[j], axis[i])])
+        });
+        let sine = self.dot_of(across, across);
+        let side = self.dot_of(foot, across);
+        let tilt = self.dot_of(away, aside);
+        let square = self.dot_of(away, away);
+        let a = self.mul_add(-growth, growth, sine);
+        let half_b = self.mul_add(-radius, growth, tilt);
+        let c = self.mul_add(-radius, radius, square);
+        let widened = self.mul(sine, radius);
+        let of_cylinder = self.dot(&mut [(widened, radius), (-side, side)]);
+        let of_growth = self.dot(&mut [(growth, square), (-2.0 * tilt, radius)]);
+        let discriminant = self.mul_add(growth, of_growth, of_cylinder);
+        let root = self.sqrt(discriminant.max(0.0));
+        let to_far = if half_b < 0.0 { -root } else { root };
+        let (sum, rest) = (self.add(half_b, to_far), self.add(half_b, -to_far));
+        let is_flat = a.abs() < 2_f32.powi(-34);
+        let one = match (is_flat, sum < 0.0) {
+            (true, true) => FAR,
+            (true, false) => -FAR,
+            (false, _) => self.divide(-sum, a).clamp(-FAR, FAR),
+        };
+        let square_of_sum = self.mul(sum, sum);
+        let size = square.max(self.mul(radius, radius));
+        let is_quotient = is_flat || square_of_sum > self.mul(a.abs(), size);
+        let two = if is_quotient {
+            self.divide(-c, if sum == 0.0 { 1.0 / FAR } else { sum }).clamp(-FAR, FAR)
+        } else {
+            self.divide(-rest, a).clamp(-FAR, FAR)
+        };
+        let (low, high) = (one.min(two), one.max(two));
+        let is_steep = a < 0.0 && !is_flat;
+        let (side_in, side_out) = match (is_steep, growth > 0.0) {
+            (false, _) => (low, high),
+            (true, true) => (high, FAR),
+            (true, false) => (-FAR, low),
+        };
+
+        let least = 2_f32.powi(-40);
+        let risen = if rise.abs() >= least { rise } else { least * if rise < 0.0 { -1.0 } else { 1.0 } };
+        let mut plane = |end: f32| {
+            let way = self.add(end, -height);
+            self.divide(way, risen)
+        };
+        let (at_start, at_end) = (plane(-0.5 * length), plane(0.5 * length));
+        let (slab_in, slab_out) = (at_start.min(at_end), at_start.max(at_end));
+        let (enters_disc, leaves_disc) = (slab_in > side_in, slab_out < side_out);
+        let (enters, leaves) = (slab_in.max(side_in), slab_out.min(side_out));
+        let is_crossed = (discriminant >= 0.0 || is_steep || is_flat) && enters <= leaves;
+        let is_up = risen > 0.0;
+        let [start_closed, end_closed] = [cone.first_radius, cone.second_radius].map(f32::is_sign_positive);
+        let (closed_in, closed_out) = if is_up { (start_closed, end_closed) } else { (end_closed, start_closed) };
+        let (near, far) = (self.add(b, enters), self.add(b, leaves));
+        let is_near = is_crossed && (closed_in || !enters_disc) && near > 0.0;
+        let is_far = is_crossed && (closed_out || !leaves_disc) && far > 0.0;
+        let (t, from_foot, is_disc) = match (is_near, is_far) {
+            (true, _) => (near, enters, enters_disc),
+            (false, true) => (far, leaves, leaves_disc),
+            (false, false) => (NO_HIT, leaves, leaves_disc),
+        };
+        if is_disc {
+            return (t, if is_near == is_up { axis.map(|c| -c) } else { axis });
+        }
+        let outward = self.vector(|this, k| this.mul_add(from_foot, aside[k], away[k]));
+        let radius = self.mul_add(from_foot, growth, radius);
+        let sloped = self.mul(slope, radius);
+        let normal = self.vector(|this, k| this.mul_add(-sloped, axis[k], outward[k]));
+        let square = self.dot_of(normal, normal);
+        if square < 1e-37 {
+            return (t, if slope > 0.0 { axis.map(|c| -c) } else { axis });
+        }
+        let length = self.sqrt(square);
+        (t, self.vector(|this, k| this.divide(normal[k], length)))
+    }
+}
+
 /// The right triangle of ray, foot point and hit.
 pub(crate) struct Triangle {
     b: f32,
@@ -220,7 +329,7 @@ impl LegalDevice {
         self.vector(|this, k| this.divide(outward[k], length))
     }
 
-    /// Renders a picture of headlight-lit spheres. `made` is a recording of the same view, of which only the device's
+    /// Renders a picture of headlight-lit spheres and cones. `made` is a recording of the same view, of which only the device's
     /// input is used.
     pub(crate) fn record(&mut self, scene: &Scene, made: &Recording) -> Recording {
         let Recording { camera, uploaded, film, primary, .. } = made;
@@ -239,6 +348,12 @@ impl LegalDevice {
                         }
                     }
                 }
+                for (cone, place) in scene.cones().iter().zip(scene.len() as u32..) {
+                    let here = if is_inside { self.cone(&ray, cone).0 } else { NO_HIT };
+                    if here < t {
+                        (t, id) = (here, place);
+                    }
+                }
                 let mut shading_ray = None;
                 layers.push(if id == NO_ID {
                     Pixel::miss(primary.background.to_array())
@@ -246,7 +361,10 @@ impl LegalDevice {
                     // Another kernel computes the ray again.
                     let (again, _) = self.ray(camera.kind, uploaded, film, [i, j]);
                     shading_ray = Some(again);
-                    let normal = self.normal(&again, scene.spheres()[id as usize]);
+                    let normal = match scene.spheres().get(id as usize) {
+                        Some(sphere) => self.normal(&again, *sphere),
+                        None => self.cone(&again, &scene.cones()[id as usize - scene.len()]).1,
+                    };
                     let d = again.direction;
                     let cosine = self.dot(&mut [0, 1, 2].map(|k| (normal[k], d[k]))).abs();
                     let color = scene.color(id).to_array().map(|c| self.mul(c, cosine));

@@ -109,6 +109,11 @@ impl Answers<'_> {
 
     /// Checks whether the answers can be judged. Every number is checked.
     pub(super) fn check(&self, scene: &Scene, rays: Rays<'_>) -> Result<(), ConformanceError> {
+        if !scene.cones().is_empty() {
+            let message = "answers to rays in scenes with cones or cylinders cannot be judged yet; leave them out, or \
+                           check pictures that Pinhole draws by primary rays";
+            return Err(refused(None, message.to_owned()));
+        }
         let size = self.size;
         let count = u64::from(size[0]) * u64::from(size[1]);
         let [width, height] = size;

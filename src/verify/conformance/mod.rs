@@ -130,7 +130,8 @@ impl Checker<'_> {
     ///
     /// # Errors
     /// Returns an error if a list has a wrong length, an id is not the index of a sphere, a number is not finite or not
-    /// positive where it must be, or if depths along an axis are given without a camera that has one.
+    /// positive where it must be, if depths along an axis are given without a camera that has one, or if the scene has
+    /// cones, whose answers are not judged yet.
     pub fn certify_answers(
         &self,
         answers: &Answers<'_>,
@@ -145,7 +146,7 @@ impl Checker<'_> {
         answers.check(self.scene, rays)?;
         let check = PixelCheck {
             scene: self.scene,
-            candidates: &self.candidates,
+            spheres: &self.candidates.spheres,
             answers: *answers,
             rays,
             axis: rays.axis(),

@@ -7,8 +7,8 @@ use super::relative_sphere::RelativeSphere;
 use crate::image::NO_ID;
 use crate::scene::Scene;
 use crate::verify::certificate::Outcome;
-use crate::verify::hit::Candidates;
 use crate::verify::sphere::Line;
+use crate::verify::tree::Tree;
 
 /// The k (a move in units of ε) that moves a centre by its distance: every answer consistent with one sphere is legal.
 const EVERYTHING: f64 = 1.0 / EPSILON;
@@ -18,7 +18,7 @@ const OF_SEARCH: f64 = 1.0 / (1_u64 << 40) as f64;
 
 pub(super) struct PixelCheck<'a> {
     pub(super) scene: &'a Scene,
-    pub(super) candidates: &'a Candidates,
+    pub(super) spheres: &'a Tree<[f32; 4]>,
     pub(super) answers: Answers<'a>,
     pub(super) rays: Rays<'a>,
     pub(super) axis: Option<DVec3>,
@@ -206,15 +206,15 @@ impl PixelCheck<'_> {
     /// hit.
     fn find(&self, ray: &ExactRay, claim: Option<&Claim>) -> (Vec<Other>, bool) {
         let (mut others, k) = (Vec::<Other>::new(), self.at_most);
-        let longest = self.candidates.longest_from(ray.line.origin);
+        let longest = self.spheres.longest_from(ray.line.origin);
         let beside = k * EPSILON * (longest + ray.start) + OF_SEARCH * longest;
         let claimed = claim.map(|claim| (claim, k * claim.unit));
         let certain = claimed.filter(|(claim, a)| claim.seen.move_to_miss() > *a);
         let mut limit = certain.map_or(f64::INFINITY, |(claim, a)| claim.seen.latest(a));
-        self.candidates.visit_beside(&ray.line, beside, limit, |candidate| {
-            let seen = ray.seen(candidate.sphere);
+        self.spheres.visit_beside(&ray.line, beside, limit, |candidate| {
+            let seen = ray.seen(candidate.shape);
             let a = k * ray.unit(&seen);
-            if seen.move_to_hit() > a || claim.is_some_and(|c| is_same(c.sphere, candidate.sphere)) {
+            if seen.move_to_hit() > a || claim.is_some_and(|c| is_same(c.sphere, candidate.shape)) {
                 return limit;
             }
             let earliest = seen.earliest(a);
@@ -233,10 +233,10 @@ impl PixelCheck<'_> {
     /// The spheres other than the claimed one that the exact ray meets before `t`.
     fn find_crossed(&self, ray: &ExactRay, claim: Option<&Claim>, t: f64) -> Vec<Other> {
         let mut others = Vec::new();
-        let beside = OF_SEARCH * self.candidates.longest_from(ray.line.origin);
-        self.candidates.visit_beside(&ray.line, beside, t, |candidate| {
-            let seen = ray.seen(candidate.sphere);
-            let is_other = claim.is_none_or(|claim| !is_same(claim.sphere, candidate.sphere));
+        let beside = OF_SEARCH * self.spheres.longest_from(ray.line.origin);
+        self.spheres.visit_beside(&ray.line, beside, t, |candidate| {
+            let seen = ray.seen(candidate.shape);
+            let is_other = claim.is_none_or(|claim| !is_same(claim.sphere, candidate.shape));
             if is_other && seen.move_to_miss() > 0.0 {
                 others.push(Other { id: candidate.id, seen, earliest: seen.earliest(0.0) });
             }

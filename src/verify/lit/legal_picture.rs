@@ -14,8 +14,8 @@ use crate::verify::denoised::{LegalGuide, Light, filtered, near, product};
 use crate::verify::hit::LegalHits;
 use crate::verify::lit::check::LitCheck;
 use crate::verify::lit::forward::PixelLight;
+use crate::verify::normals::LegalNormals;
 use crate::verify::rounding::{DIVIDE, FLUSH, Interval, PAD, U, down, gamma, up};
-use crate::verify::sphere::LegalNormals;
 
 /// The smallest albedo by which light is divided before noise is removed.
 const LEAST_ALBEDO: f64 = 0.01_f32 as f64;
@@ -92,7 +92,7 @@ impl LitCheck<'_> {
             ([], true) => Some(Spot { id: NO_ID, depth: Interval::ZERO, normal: DVec3::ZERO, normal_error: 0.0 }),
             ([hit], false) => {
                 let ((None, Some(side)) | (Some(side), None)) = (hit.near, hit.far) else { return None };
-                let normals = LegalNormals::new(&ray.line, self.checker.scene.spheres()[hit.id as usize], ray.slack);
+                let normals = LegalNormals::new(&ray.line, self.checker.scene.shared_shapes().shape(hit.id), ray.slack);
                 let (normal, normal_error) = normals.only()?;
                 let Interval { low, high } = ray.depths(side);
                 let depth = Interval { low: low - PAD * moved, high: high + PAD * moved };

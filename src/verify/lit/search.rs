@@ -9,7 +9,7 @@ use crate::recording::NO_HIT;
 use crate::recording::lit::{Departure, NO_EMITTER, PathState, flag, slot};
 use crate::verify::camera::{CameraModel, CameraRay, EnteredRay};
 use crate::verify::checker::Checker;
-use crate::verify::hit::{Candidate, Candidates, LegalHit, LegalHits, legal_hit};
+use crate::verify::hit::{Candidates, LegalHit, LegalHits, key_of_sphere, legal_hit};
 use crate::verify::lit::certificate::LitStage;
 use crate::verify::lit::check::LitCheck;
 use crate::verify::lit::judge::{Judge, Mismatch, Name, StageResult, searched};
@@ -17,6 +17,7 @@ use crate::verify::lit::kernel::Hit;
 use crate::verify::number::Number;
 use crate::verify::rounding::{FLUSH, Interval, PAD, gamma};
 use crate::verify::sphere::{Line, Slack};
+use crate::verify::tree::Candidate;
 
 const STAGE: LitStage = LitStage::Extend;
 
@@ -70,7 +71,7 @@ impl Entry {
         if let (Some((id, far_side)), Some(sphere)) = (own, departed)
             && far_side.low <= legal.limit
         {
-            legal.spheres.push(LegalHit { id, near: None, far: Some(far_side), sphere: sphere.map(f32::to_bits) });
+            legal.spheres.push(LegalHit { id, near: None, far: Some(far_side), key: key_of_sphere(sphere) });
         }
     }
 
@@ -79,7 +80,7 @@ impl Entry {
         &self,
         candidates: &Candidates,
         distance: Number,
-        is_exempt: impl Fn(&Candidate) -> bool,
+        is_exempt: impl Fn(&Candidate<[f32; 4]>) -> bool,
     ) -> Obstacle {
         let Self { line, slack, enter, may_hit_box, may_miss_box } = self;
         let rest = (distance - Number::between(enter.low, enter.high)).interval();
@@ -87,7 +88,7 @@ impl Entry {
         if !may_hit_box || rest.high <= 0.0 {
             return found;
         }
-        candidates.visit(line, slack.across + slack.along, rest.high, |candidate| {
+        candidates.spheres.visit(line, slack.across + slack.along, rest.high, |candidate| {
             if is_exempt(candidate) {
                 return rest.high;
             }
@@ -193,9 +194,8 @@ pub(crate) fn hidden_from_path(
         .flatten()
         .map(|sphere| sphere.map(f32::from_bits));
     let exempt = [departed, sphere_of_light];
-    entry.hidden(candidates, distance, |candidate| {
-        exempt.into_iter().flatten().any(|own| is_same(candidate.sphere, own))
-    })
+    entry
+        .hidden(candidates, distance, |candidate| exempt.into_iter().flatten().any(|own| is_same(candidate.shape, own)))
 }
 
 pub(crate) const OPEN: Name = (LitStage::Occlude, "the visibility of the light");
@@ -252,7 +252,7 @@ impl Doubts {
     pub(crate) const NONE: Self = Self(Vec::new());
 
     /// Adds a sphere that the ray may miss, or else whose surface may be behind the light.
-    pub(crate) fn add(&mut self, Candidate { sphere, id }: &Candidate, line: &Line, may_miss: bool) {
+    pub(crate) fn add(&mut self, Candidate { shape: sphere, id }: &Candidate<[f32; 4]>, line: &Line, may_miss: bool) {
         if self.0.len() < MOST {
             self.0.push(match may_miss {
                 true => {
@@ -293,7 +293,7 @@ mod tests {
         let line = Line::new([0.0; 3], [0.0, 0.0, 1.0]);
         let named = |spheres: &[[f32; 4]]| {
             let mut legal = LegalHits::default();
-            legal.find(&Candidates::new(spheres).unwrap(), &line);
+            legal.find(&Candidates::new(spheres, &[]).unwrap(), &line);
             legal.alternatives()
         };
         // Two spheres that begin where a third begins, and one far behind.
@@ -325,7 +325,7 @@ mod tests {
     #[test]
     fn doubts_say_how_near_a_silhouette_is() {
         let line = Line::new([0.0; 3], [0.0, 0.0, 1.0]);
-        let touched = Candidate { sphere: [2.0, 0.0, 5.0, 2.0 + 1e-6], id: 77 };
+        let touched = Candidate { shape: [2.0, 0.0, 5.0, 2.0 + 1e-6], id: 77 };
         let mut doubts = Doubts::NONE;
         doubts.add(&touched, &line, true);
         doubts.add(&Candidate { id: 5, ..touched }, &line, false);

@@ -20,8 +20,15 @@ use crate::verify::lit::sampling::ENERGIES;
 use crate::verify::rounding::{FLUSH, U, are_near, is_near};
 use crate::verify::uploaded::{LEAST_MARGIN, check_view};
 
+/// Why light is not judged in scenes with cones.
+pub(crate) const OF_CONES: &str = "pictures with light of scenes with cones or cylinders cannot be checked yet; check a \
+                                   picture by primary rays, with a flat or headlight shading";
+
 /// Compares the recording with the scene and the settings.
 pub(crate) fn check(scene: &Scene, candidates: &Candidates, inputs: &LitInputs) -> Result<(), UploadError> {
+    if !scene.cones().is_empty() {
+        return Err(UploadError(OF_CONES.to_owned()));
+    }
     check_view(scene, candidates, &inputs.camera, &inputs.uploaded)?;
     check_lighting(scene, inputs)?;
     check_tables(scene, inputs)

@@ -335,9 +335,11 @@ impl<'a> Array<'a> {
         Self::new(name, &[items.len()], items, numbers)
     }
 
-    /// The array of spheres, which is also the input of the scene's digest.
-    pub(super) fn spheres(scene: &'a Scene) -> Self {
-        Self::list("spheres", scene.spheres(), |sphere| *sphere)
+    /// The arrays of spheres and of cones, if there are some, which are also the input of the scene's digest.
+    pub(super) fn shapes(scene: &'a Scene) -> impl Iterator<Item = Self> {
+        let spheres = Self::list("spheres", scene.spheres(), |sphere| *sphere);
+        let cones = Self::list("cones", scene.cones(), |cone| bytemuck::cast::<_, [f32; 8]>(*cone));
+        [spheres].into_iter().chain(Some(cones).filter(|_| !scene.cones().is_empty()))
     }
 
     fn bytes(&self) -> usize {

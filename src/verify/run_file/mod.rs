@@ -2,16 +2,17 @@
 //! light: pictures with light are judged from their own files ([`finished`](super::finished)).
 //!
 //! A run file has the format `safetensors`, which Python reads with `safetensors.numpy.load_file`. With H rows of W
-//! pixels, n spheres and m colours, its arrays are:
+//! pixels, n spheres, c cones and cylinders, and m colours, its arrays are:
 //!
 //! | array | type, shape | |
 //! |---|---|---|
 //! | `camera` | f64 (5, 3) | origin, right, up, forward and numbers of [`CameraVectors`](crate::camera::CameraVectors) |
 //! | `scene_origin` | f64 (3,) | origin of the scene's frame in world space |
 //! | `spheres` | f32 (n, 4) | centre in the frame, and radius |
+//! | `cones` | f32 (c, 8) | start, first radius, end and second radius of [`ConeInFrame`](crate::scene::ConeInFrame); absent without cones |
 //! | `palette` | f32 (m, 3) | linear colours of the palette or of the colour map |
-//! | `color_index` | u32 (n,) | indices into the palette; absent if all spheres have the first colour |
-//! | `color_rgba8` | u8 (n, 4) | instead of both, if every sphere has its own colour: sRGB, and alpha |
+//! | `color_index` | u32 (n + c,) | indices into the palette, of spheres and then of cones; absent if all have the first colour |
+//! | `color_rgba8` | u8 (n + c, 4) | instead of both, if every shape has its own colour: sRGB, and alpha |
 //! | `background` | f32 (3,) | linear colour |
 //! | `view` | f32 (7, 3) | origin, right, up, forward, numbers, `scene_min`, `scene_max` of [`UploadedView`](super::UploadedView) |
 //! | `advance` | f32 (1,) | `advance` of the same |
@@ -26,11 +27,11 @@
 //! | `depth`, `id` | f32, u32 (H, W) | layers of the picture |
 //! | `rendered_color`, `rendered_normal`, `rendered_depth`, `rendered_id` | like those | layers of the picture rendered without recording, if it differs |
 //! | `surfaces` | f32 (k, 5) | surface properties: material (0 Lambert, 1 conductor, 2 dielectric, 3 emissive), three parameters, and opacity; absent if they are the default |
-//! | `surface_index` | u32 (n,) | indices into them; absent if all spheres have the first |
+//! | `surface_index` | u32 (n + c,) | indices into them; absent if all have the first |
 //!
 //! The metadata are texts: `pinhole_run`, the version of the format, [`VERSION`]; `sha256`, the digest of the
-//! whole file, computed with zeros in place of its own 64 digits; `scene_sha256`, the digest of the array
-//! `spheres`; `camera`, `y_axis` and `shading`; `rendered`, which is `same` or `other` if the view was also
+//! whole file, computed with zeros in place of its own 64 digits; `scene_sha256`, the digest of the arrays
+//! `spheres` and `cones`; `camera`, `y_axis` and `shading`; `rendered`, which is `same` or `other` if the view was also
 //! rendered without recording; and the fields of [`Provenance`], with the prefix `limit_` for limits. The same run
 //! gives the same file, to the byte.
 //!
@@ -109,11 +110,12 @@ impl Provenance {
 /// The prefix of the metadata keys of limits.
 const LIMIT: &str = "limit_";
 
-/// The SHA-256 digest of the spheres of a scene, each as four little-endian f32, in hexadecimal.
+/// The SHA-256 digest of the spheres of a scene, each as four little-endian f32, and of its cones, each as eight, in
+/// hexadecimal.
 #[must_use]
 pub fn scene_sha256(scene: &Scene) -> String {
     let mut digest = Sha256::new();
     // Writing to a digest cannot fail.
-    let _ = Array::spheres(scene).emit(&mut sink_into(&mut digest));
+    let _ = Array::shapes(scene).try_for_each(|array| array.emit(&mut sink_into(&mut digest)));
     hex(digest)
 }

@@ -11,7 +11,7 @@ use crate::image::color::LinearRgb;
 use crate::parallel::try_map;
 use crate::render::{PrimarySettings, Shading};
 use crate::scene::material::{Material, SurfaceProperties};
-use crate::scene::{Appearance, Colors, Scene};
+use crate::scene::{Appearance, Colors, ConeInFrame, Scene};
 use crate::text::shortened;
 use crate::verify::run_file::container::{Container, Flag, contradiction};
 use crate::verify::run_file::{LIMIT, Provenance, Run, RunFileError, scene_sha256};
@@ -38,26 +38,29 @@ pub fn read_from<S: Read + Seek>(source: &mut S) -> Result<Run, RunFileError> {
 fn scene(file: &Container<'_>) -> Result<Scene, RunFileError> {
     let [origin] = file.fixed::<f64, 3, 1>("scene_origin")?;
     let spheres = file.list::<f32, 4>("spheres")?;
-    let colors = colors(file, spheres.len())?;
-    let appearance = with_surfaces(file, colors.into(), spheres.len())?;
-    let scene = Scene::from_frame(DVec3::from(origin), spheres, appearance)
+    let cones = if file.has("cones") { file.list::<f32, 8>("cones")? } else { Vec::new() };
+    let count = spheres.len() + cones.len();
+    let colors = colors(file, count)?;
+    let appearance = with_surfaces(file, colors.into(), count)?;
+    let cones: Vec<ConeInFrame> = bytemuck::cast_vec(cones);
+    let scene = Scene::from_frame(DVec3::from(origin), (spheres, cones), appearance)
         .map_err(|error| contradiction(format!("the scene: {error}")))?;
     if file.text("scene_sha256")? != scene_sha256(&scene) {
-        return Err(contradiction("`scene_sha256` is not the digest of the spheres"));
+        return Err(contradiction("`scene_sha256` is not the digest of the shapes"));
     }
     Ok(scene)
 }
 
-fn colors(file: &Container<'_>, spheres: usize) -> Result<Colors, RunFileError> {
+fn colors(file: &Container<'_>, shapes: usize) -> Result<Colors, RunFileError> {
     if file.has("color_rgba8") {
-        return Ok(Colors::Rgba8(file.items::<u8, 4>("color_rgba8", &[spheres])?));
+        return Ok(Colors::Rgba8(file.items::<u8, 4>("color_rgba8", &[shapes])?));
     }
     let palette: Vec<_> =
         file.list::<f32, 3>("palette")?.into_iter().map(|rgb| color("palette", rgb)).collect::<Result<_, _>>()?;
     match palette.first() {
         Some(color) if !file.has("color_index") => Ok(Colors::One(*color)),
         None => Ok(Colors::Palette { palette, indices: Vec::new() }),
-        Some(_) => Ok(Colors::Palette { palette, indices: file.numbers("color_index", &[spheres])? }),
+        Some(_) => Ok(Colors::Palette { palette, indices: file.numbers("color_index", &[shapes])? }),
     }
 }
 
@@ -196,8 +199,8 @@ fn surface([kind, a, b, c, opacity]: [f32; 5]) -> Option<SurfaceProperties> {
     Some(SurfaceProperties { material, opacity })
 }
 
-/// Adds the surfaces of a file with this number of spheres. If the file has none, they are the default.
-fn with_surfaces(file: &Container<'_>, appearance: Appearance, spheres: usize) -> Result<Appearance, RunFileError> {
+/// Adds the surfaces of a file with this number of shapes. If the file has none, they are the default.
+fn with_surfaces(file: &Container<'_>, appearance: Appearance, shapes: usize) -> Result<Appearance, RunFileError> {
     if !file.has("surfaces") {
         return Ok(appearance);
     }
@@ -210,7 +213,7 @@ fn with_surfaces(file: &Container<'_>, appearance: Appearance, spheres: usize) -
     });
     let surfaces: Vec<_> = surfaces.collect::<Result<_, RunFileError>>()?;
     if file.has("surface_index") {
-        let indices = file.numbers("surface_index", &[spheres])?;
+        let indices = file.numbers("surface_index", &[shapes])?;
         return Ok(appearance.with_surfaces(surfaces, indices));
     }
     match surfaces[..] {

@@ -11,8 +11,8 @@ use crate::verify::run_file::container::{Array, Flag};
 use crate::verify::run_file::{LIMIT, Provenance, container, scene_sha256};
 use crate::verify::{PlainRender, Recording, TracedPixel, UploadedView};
 
-/// Writes a run file in small pieces: 98 bytes for each pixel, 130 if a different picture was rendered, and 16 to 24
-/// for each sphere.
+/// Writes a run file in small pieces: 98 bytes for each pixel, 130 if a different picture was rendered, 16 to 24 for each
+/// sphere, and 32 to 40 for each cone.
 ///
 /// # Errors
 /// Returns an error if writing fails, or if the recording has another size than its film or lacks a layer.
@@ -47,7 +47,6 @@ pub fn write(scene: &Scene, recording: &Recording, provenance: &Provenance, out:
     let mut arrays = vec![
         Array::list("camera", camera, |vector| vector.to_array()),
         Array::new("scene_origin", &[], vec![scene.origin()], |origin| origin.to_array()),
-        Array::spheres(scene),
         Array::new("background", &[], vec![primary.background], |color| color.to_array()),
         Array::list("view", view, |vector| *vector),
         Array::list("advance", vec![uploaded.advance], |advance| [*advance]),
@@ -61,6 +60,7 @@ pub fn write(scene: &Scene, recording: &Recording, provenance: &Provenance, out:
         Array::new("hit_id", &shape, pixels, |pixel| [pixel.id]),
     ];
     arrays.extend(layers);
+    arrays.extend(Array::shapes(scene));
     if let PlainRender::Other(image) = rendered {
         let names = ["rendered_color", "rendered_depth", "rendered_normal", "rendered_id"];
         arrays.extend(layers_of(image, shape, "rendered picture", names)?);

@@ -84,7 +84,7 @@ impl Kernel<'_> {
         let departed = scene.spheres().get(state.raw.departure().id as usize);
         let are_opaque = scene.is_opaque();
         ray.hidden(candidates, distance, |candidate| {
-            let is_own = departed.is_some_and(|own| is_same(candidate.sphere, *own));
+            let is_own = departed.is_some_and(|own| is_same(candidate.shape, *own));
             is_own || !(are_opaque || scene.surface(candidate.id).opacity >= 1.0)
         })
     }

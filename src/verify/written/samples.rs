@@ -10,11 +10,12 @@ use crate::verify::camera::CameraModel;
 use crate::verify::certificate::Verdict;
 use crate::verify::checker::Checker;
 use crate::verify::hit::LegalHits;
+use crate::verify::normals::LegalNormals;
 use crate::verify::rounding::{Interval, U, down, up};
-use crate::verify::sphere::{LegalNormals, exactly, legal_color};
+use crate::verify::sphere::{exactly, legal_color};
 use crate::verify::uploaded::expected_view;
 
-/// Legal colours: the colours of one side of a sphere, or the colour of a miss.
+/// Legal colours: the colours of one side of a shape, or the colour of a miss.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct LegalColor {
     /// Linear red, green and blue.
@@ -54,13 +55,13 @@ impl<'a> PictureCheck<'a> {
         (Verdict::of(&hits), colors)
     }
 
-    /// Finds the spheres that may be hit, and their colours.
+    /// Finds the shapes that may be hit, and their colours.
     fn find(&self, pixel: [u32; 2], hits: &mut LegalHits, colors: &mut Vec<LegalColor>) {
         let ray = self.model.ray(pixel).any(&self.model).moved(self.moved);
         ray.find(&self.checker.candidates, hits);
         let scene = self.checker.scene;
         for hit in &hits.spheres {
-            let normals = LegalNormals::new(&ray.line, scene.spheres()[hit.id as usize], ray.slack);
+            let normals = LegalNormals::new(&ray.line, scene.shared_shapes().shape(hit.id), ray.slack);
             let own = scene.color(hit.id).to_array();
             colors.extend(normals.crossings().map(|normal| LegalColor {
                 color: legal_color(self.primary.shading, own, normal, ray.direction),
@@ -74,6 +75,12 @@ impl<'a> PictureCheck<'a> {
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
 #[error("{0}")]
 pub struct WrittenError(String);
+
+impl WrittenError {
+    pub(in crate::verify) fn new(message: &str) -> Self {
+        Self(message.to_owned())
+    }
+}
 
 /// The samples of a picture as they are in its file, row by row from the top.
 #[derive(Clone, Copy, Debug)]
