@@ -4,7 +4,7 @@
 // The cone, its discs and what they enclose are convex. So a ray enters once and leaves once: between the later one of
 // the entries of the infinite cone and of the slab between the planes of the discs, and the earlier one of the exits. A
 // ray cannot pass between a disc and the side, because one comparison decides for both.
-// provides: cone_normal, discriminant_of, intersect
+// provides: cone_normal, discriminant_of, intersect, shape_normal
 // needs: ConeSeen, LEAST_LENGTH, NO_HIT, Ray, Shape, fence, fence3, see_cone, side_crossing
 
 // The least part of a direction along the axis: 2^-40.

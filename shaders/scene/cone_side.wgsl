@@ -95,8 +95,7 @@ fn side_crossing(ray: Ray, seen: ConeSeen) -> SideCrossing {
     let two = clamp(select(-fence(half_b - to_far) / divisor, quotient, is_quotient), -FAR, FAR);
     let low = min(one, two);
     let high = max(one, two);
-    // A ray that is steeper than the side is inside before the first or after the second root, on the side of the tip
-    // where the radius is positive.
+    // A ray that is steeper than the side is inside before the first or after the second root, where radii are positive.
     let is_steep = a < 0.0 && !is_flat;
     let opens = growth > 0.0;
     let side_in = select(low, select(-FAR, high, opens), is_steep);

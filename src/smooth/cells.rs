@@ -2,8 +2,7 @@
 
 use glam::{DVec3, IVec3};
 
-use super::levels::Places;
-use super::pieces::Axis;
+use super::pieces::{Axis, Pieces};
 use crate::geometry::cone::ConeInFrame;
 use crate::geometry::cone_crossing::crossings;
 use crate::geometry::ray::Ray;
@@ -57,18 +56,18 @@ impl Cells {
     }
 
     /// The number of sample points, of eight, inside shapes, for each cell. Each thread fills some layers.
-    pub(super) fn fill(&self, places: &Places<'_>) -> Vec<u8> {
+    pub(super) fn fill(&self, shapes: &SharedShapes, pieces: &Pieces) -> Vec<u8> {
         let [x, y, z] = self.counts;
         let mut bits = vec![0; x * y * z];
         let layers = z.div_ceil(parallel::threads()).max(1);
         parallel::for_each(bits.chunks_mut(x * y * layers).enumerate().collect(), |(part, bits)| {
             let first = (part * layers) as i64;
             let samples = 2 * first..2 * (first + (bits.len() / (x * y)) as i64);
-            for sphere in &places.shapes.spheres {
+            for sphere in &shapes.spheres {
                 self.fill_sphere(sphere, &samples, bits);
             }
-            for (piece, ball) in places.pieces() {
-                self.fill_piece(&piece.cut(&places.shapes.cones[piece.cone as usize]), ball, &samples, bits);
+            for (piece, ball) in pieces.with_balls(shapes) {
+                self.fill_piece(&piece.cut(&shapes.cones[piece.cone as usize]), ball, &samples, bits);
             }
             bits.iter_mut().for_each(|bits: &mut u8| *bits = bits.count_ones() as u8);
         });

@@ -202,7 +202,7 @@ impl<'a> Sight<'a> {
             let cosine = rise / length;
             let sine = (1.0 - cosine * cosine).max(0.0).sqrt();
             let end = usize::from(free > 0.5);
-            let is_end = free != part && !is_cut[end] && sine > 1e-3;
+            let is_end = !(0.0..=1.0).contains(&free) && !is_cut[end] && sine > 1e-3;
             let beyond = if is_end { beside.dot(span - rise * direction).abs() / (length * sine) } else { 0.0 };
             let aside = (beside.length_squared() - beyond * beyond).max(0.0).sqrt();
             let mut hides = 0.5 + (wide - aside) / border;

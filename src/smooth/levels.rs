@@ -27,11 +27,6 @@ pub(super) struct Places<'a> {
 }
 
 impl<'a> Places<'a> {
-    /// The pieces of cones, with their balls.
-    pub(super) fn pieces(&self) -> impl Iterator<Item = (&'a Piece, &'a [f32; 4])> {
-        self.pieces.all.iter().zip(&self.balls[self.shapes.spheres.len()..])
-    }
-
     /// The piece, and its cone, for which a ball stands; `None` for a sphere.
     pub(super) fn piece(&self, ball: u32) -> Option<(Piece, &'a ConeInFrame)> {
         let piece = self.pieces.all[(ball as usize).checked_sub(self.shapes.spheres.len())?];

@@ -3,7 +3,6 @@
 
 use glam::DVec3;
 
-use super::cells::Cells;
 use crate::geometry::cone::ConeInFrame;
 use crate::scene::SharedShapes;
 
@@ -63,14 +62,15 @@ pub(super) struct Pieces {
 }
 
 impl Pieces {
-    pub(super) fn new(cells: &Cells, shapes: &SharedShapes) -> Self {
+    /// Pieces for cells of this side.
+    pub(super) fn new(side: f64, shapes: &SharedShapes) -> Self {
         if shapes.cones.is_empty() {
             return Self::default();
         }
         let wanted = |cone: &ConeInFrame, grown: f64| {
             let axis = Axis::of(cone);
             let radius = axis.radius(0.0).max(axis.radius(1.0));
-            (axis.length / (LENGTH[0] * radius).max(LENGTH[1] * cells.side) / grown).ceil().max(1.0)
+            (axis.length / (LENGTH[0] * radius).max(LENGTH[1] * side) / grown).ceil().max(1.0)
         };
         let beside = |grown: f64| shapes.cones.iter().map(|cone| wanted(cone, grown) - 1.0).sum::<f64>();
         let mut grown = 1.0;
@@ -90,6 +90,11 @@ impl Pieces {
             }
         }
         Self { all, balls }
+    }
+
+    /// The pieces, with their balls.
+    pub(super) fn with_balls<'a>(&'a self, shapes: &SharedShapes) -> impl Iterator<Item = (&'a Piece, &'a [f32; 4])> {
+        self.all.iter().zip(self.balls.iter().skip(shapes.spheres.len()))
     }
 }
 

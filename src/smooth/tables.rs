@@ -36,7 +36,7 @@ impl Tables {
             return kept;
         }
         let cells = Cells::new(shapes);
-        let pieces = Pieces::new(&cells, shapes);
+        let pieces = Pieces::new(cells.side, shapes);
         let needs_levels = wanted.shadows || wanted.radius.is_some() && cells.has_near;
         let levels = Levels::new(&cells, if needs_levels { balls(&pieces, shapes) } else { &[] });
         let places = Places { shapes, pieces: &pieces, balls: balls(&pieces, shapes), cells: &cells, levels: &levels };

@@ -152,7 +152,7 @@ impl LegalDevice {
     }
 }
 
-/// A distance that no ray reaches, `FAR` of shaders/scene/cone_side.wgsl.
+/// A distance that no ray reaches, `FAR` of `shaders/scene/cone_side.wgsl`.
 const FAR: f32 = 1e30;
 
 impl LegalDevice {

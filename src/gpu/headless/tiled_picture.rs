@@ -48,7 +48,7 @@ impl Headless {
         let mut image = Image::new(film.width(), film.height(), *layers)?;
         self.alone(async |renderers: &mut Renderers| {
             let layouts = self.layouts_of(vec![structure], Some(structure)).await?;
-            let has_both = scene.len() > 0 && !scene.cones().is_empty();
+            let has_both = !scene.spheres().is_empty() && !scene.cones().is_empty();
             // Pipelines for cones always go on from the hits of spheres.
             let has_slabs = scene.len() > ONE_SLAB || !has_both && scene.cones().len() > ONE_SLAB;
             self.begin_renderer(renderers, options_of(has_slabs));

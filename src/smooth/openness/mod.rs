@@ -49,7 +49,7 @@ impl Openness {
         let near_end = radius.min(2.0 * cells.side) as f32;
         let cubes = cells.cube_counts().into_iter().product();
         Self {
-            filled: cells.fill(places),
+            filled: cells.fill(places.shapes, places.pieces),
             rays: Rays::new(cells, radius),
             near_end,
             directions: directions().map(|direction| direction.as_vec3()),
