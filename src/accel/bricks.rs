@@ -11,7 +11,9 @@ use super::grid_build::{BuiltGrid, build_grid};
 use super::plan::AccelPlan;
 use super::split::Item;
 use super::statistics::Margins;
-use super::structure::{Primitive, Structure};
+#[cfg(feature = "gpu")]
+use super::structure::Primitive;
+use super::structure::Structure;
 #[cfg(feature = "gpu")]
 use super::tiles::TileLists;
 use super::wide_tree::WideTree;
@@ -57,6 +59,7 @@ pub struct Brick {
 
 impl Brick {
     /// The kind of the shapes.
+    #[cfg(feature = "gpu")]
     pub(crate) fn primitive(&self) -> Primitive {
         if self.cones.is_empty() { Primitive::Sphere } else { Primitive::Cone }
     }

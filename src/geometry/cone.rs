@@ -48,6 +48,7 @@ impl ConeInFrame {
     }
 
     /// A ball around it: centre and radius.
+    #[cfg(feature = "gpu")]
     pub(crate) fn ball(&self) -> [f32; 4] {
         let ([start, end], [first, second]) = (self.ends(), self.radii());
         let center = 0.5 * (start + end);

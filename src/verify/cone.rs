@@ -201,7 +201,9 @@ fn hit(ray: &AnyRay, cone: &ConeInFrame, choices: &mut Choices) -> Option<LegalC
     let leaves_disc = choices.decide(slab_out.is_less(side_out));
     let enters = if enters_disc { slab_in } else { side_in };
     let leaves = if leaves_disc { slab_out } else { side_out };
-    if choices.decide(leaves.is_less(enters)) {
+    // Both roots, and both planes, are in order.
+    let are_of_one_kind = enters_disc == leaves_disc;
+    if !are_of_one_kind && choices.decide(leaves.is_less(enters)) {
         return None;
     }
     let [start_is_closed, end_is_closed] = cone.are_closed();

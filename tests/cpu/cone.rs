@@ -103,7 +103,6 @@ fn no_conforming_device_is_accused() {
             }
         }
     }
-    println!("hits are at most {worst:?} roundings outside of the cylinder around a cone, and of its box");
     assert!(worst.into_iter().all(|worst| worst < 128.0), "{worst:?}");
 }
 
@@ -169,7 +168,6 @@ fn scenes_allow_the_reference_and_nothing_that_is_wrong() {
             }
         }
     }
-    println!("{decided} of {rays} rays have one answer, {hits} of them hits; found: {found:?}");
     assert!(rays > 15_000 && decided > rays * 3 / 4, "{decided} of {rays}");
     assert_eq!(found[..2], [hits; 2]);
     assert!(found[2] > hits * 2 / 3, "{found:?} of {hits}");

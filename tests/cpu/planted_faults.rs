@@ -7,7 +7,7 @@ use pinhole::{Image, LayerSet, RenderSettings, Scene};
 
 use crate::support::legal_device::{Habit, LegalDevice};
 use crate::support::spheres_of;
-use crate::verify::{certify, legal_recording};
+use crate::verify::{certify, legal_recording, legal_recording_of_cones};
 
 /// The stages that the checker names after `spoil` changed a pixel with a hit, or one with a miss.
 fn spoilt(of_hit: bool, spoil: impl Fn(&mut TracedPixel)) -> Vec<&'static str> {
@@ -55,6 +55,41 @@ fn what_is_no_legal_answer_is_found() {
         }
         // Each component is legal for some entry into the box, but not for the same one.
         camera(true, &|ray| ray.origin[axis] += 2e-5);
+    }
+}
+
+/// Faults of all pixels that show cones, and the least share of them in which each is found.
+#[test]
+fn faults_of_cones_are_found() {
+    let (scene, recording) = legal_recording_of_cones();
+    let first = scene.len() as u32;
+    let is_cone = |id: u32| id != NO_ID && id >= first;
+    let cones = recording.pixels.iter().filter(|pixel| is_cone(pixel.id)).count();
+    let traced = |spoil: fn(&mut TracedPixel)| {
+        let mut spoilt = recording.clone();
+        spoilt.pixels.iter_mut().filter(|pixel| is_cone(pixel.id)).for_each(spoil);
+        spoilt
+    };
+    let shaded = |spoil: fn(&mut Layers)| {
+        let mut spoilt = recording.clone();
+        change_layers(&mut spoilt, |layers| {
+            if is_cone(layers.id[layers.at]) {
+                spoil(layers);
+            }
+        });
+        spoilt
+    };
+    for (fault, least, spoilt) in [
+        ("another cone", 1.0, traced(|pixel| pixel.id ^= 1)),
+        ("a miss", 0.99, traced(|pixel| (pixel.t, pixel.id) = (NO_HIT, NO_ID))),
+        ("a distance", 0.99, traced(|pixel| pixel.t *= 1.0 + 1e-4)),
+        ("a depth", 1.0, shaded(|l| l.depth[l.at] *= 1.0 + 1e-4)),
+        ("a normal that is turned", 0.98, shaded(|l| l.normal[l.at][0] += 1e-3)),
+        ("a normal of another length", 1.0, shaded(|l| l.normal[l.at] = l.normal[l.at].map(|c| 1.001 * c))),
+        ("a color", 1.0, shaded(|l| l.color[l.at][0] *= 1.001)),
+    ] {
+        let found = certify(&scene, &spoilt).count(Verdict::Violation);
+        assert!(cones > 100 && found as f64 >= least * cones as f64, "{fault}: {found} of {cones}");
     }
 }
 

@@ -175,7 +175,7 @@ fn no_picture_of_a_conforming_device_is_accused() {
 }
 
 /// Spheres between cylinders, needles, flat discs and pointed cones, with closed and open ends, at any scale.
-pub(crate) fn with_cones(seed: u64, scale: f64, length: [f64; 2], radius: [f64; 2]) -> Scene {
+fn with_cones(seed: u64, scale: f64, length: [f64; 2], radius: [f64; 2]) -> Scene {
     let mut random = fastrand::Rng::with_seed(seed);
     let cones: Vec<Cone> = (0..30)
         .map(|index| {
@@ -248,7 +248,15 @@ fn the_smallest_lengths_are_not_accused() {
 
 /// A recording of a device that rounds to nearest.
 pub(crate) fn legal_recording() -> (Scene, Recording) {
-    let scene = scene(&spheres::random(40, 1, |rng| 0.02 + 0.1 * rng.f32()));
+    recorded(scene(&spheres::random(40, 1, |rng| 0.02 + 0.1 * rng.f32())))
+}
+
+/// The same of spheres and cones.
+pub(crate) fn legal_recording_of_cones() -> (Scene, Recording) {
+    recorded(with_cones(1, 1.0, [0.3, 1.0], [0.05, 0.2]))
+}
+
+fn recorded(scene: Scene) -> (Scene, Recording) {
     let camera = cameras(&scene).pop().unwrap();
     let film = Film::new(61, 47).unwrap();
     let mut device = LegalDevice { habit: Habit::Nearest, random: fastrand::Rng::with_seed(0) };
