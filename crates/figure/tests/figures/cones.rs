@@ -62,7 +62,7 @@ fn a_cone_that_vanishes_in_the_frame_has_a_place() {
                [[cylinders]]\nstart = [1e9, 0, 0]\nend = [1000000001, 0, 0]\nradius = 0.5\n";
     let error = parse(far).scene().unwrap_err();
     assert_eq!(error.line, 7);
-    assert!(error.message.starts_with("cone 0: its start and end are both"), "{error}");
+    assert!(error.message.starts_with("cone 0: after rounding to f32"), "{error}");
     let own = SceneError::Invalid(String::new());
     assert_eq!(parse(far).at_shape(&own).line, 1);
 }
