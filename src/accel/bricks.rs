@@ -11,9 +11,7 @@ use super::grid_build::{BuiltGrid, build_grid};
 use super::plan::AccelPlan;
 use super::split::Item;
 use super::statistics::Margins;
-#[cfg(feature = "gpu")]
-use super::structure::Primitive;
-use super::structure::Structure;
+use super::structure::{Primitive, Structure};
 #[cfg(feature = "gpu")]
 use super::tiles::TileLists;
 use super::wide_tree::WideTree;
@@ -47,6 +45,8 @@ pub enum Index {
 /// A part of a scene with its acceleration structure. The default is empty.
 #[derive(Clone, Debug, Default)]
 pub struct Brick {
+    /// The kind of the shapes.
+    pub primitive: Primitive,
     /// The acceleration structure of the spheres.
     pub index: Index,
     /// Centre (x, y, z) in the scene's frame, and radius. The order is that of the structure.
@@ -58,12 +58,6 @@ pub struct Brick {
 }
 
 impl Brick {
-    /// The kind of the shapes.
-    #[cfg(feature = "gpu")]
-    pub(crate) fn primitive(&self) -> Primitive {
-        if self.cones.is_empty() { Primitive::Sphere } else { Primitive::Cone }
-    }
-
     /// The structure of a brick of cones.
     #[cfg(feature = "gpu")]
     pub(crate) fn structure_of_cones(&self) -> Structure {
@@ -223,16 +217,19 @@ impl Bricks<'_> {
         let margin = plan.statistics.margin();
         let own = || -> Vec<[f32; 4]> { ids.iter().map(|id| spheres[*id as usize]).collect() };
         match plan.structure {
-            Structure::List | Structure::Tiles => Brick { index: Index::List, spheres: own(), cones: Vec::new(), ids },
+            Structure::List | Structure::Tiles => {
+                Brick { index: Index::List, spheres: own(), primitive: Primitive::Sphere, cones: Vec::new(), ids }
+            }
             Structure::Grid | Structure::NestedGrid => {
                 let BuiltGrid { grid, spheres, ids } = build_grid(spheres, &ids, margin, plan.budget);
-                Brick { index: Index::Grid(grid), spheres, cones: Vec::new(), ids }
+                Brick { index: Index::Grid(grid), spheres, primitive: Primitive::Sphere, cones: Vec::new(), ids }
             }
             Structure::WideTree => {
                 let own = own();
                 let margins = Margins { all: margin, crowd: plan.crowd };
                 let tree = WideTree::build_with(&own, margins);
                 Brick {
+                    primitive: Primitive::Sphere,
                     cones: Vec::new(),
                     spheres: tree.ids.iter().map(|index| own[*index as usize]).collect(),
                     ids: tree.ids.iter().map(|index| ids[*index as usize]).collect(),
@@ -242,7 +239,13 @@ impl Bricks<'_> {
             Structure::RayQuery => {
                 let own = own();
                 let boxes = query_boxes(&own, plan.box_margin * margin);
-                Brick { index: Index::RayQuery(boxes), spheres: own, cones: Vec::new(), ids }
+                Brick {
+                    index: Index::RayQuery(boxes),
+                    spheres: own,
+                    primitive: Primitive::Sphere,
+                    cones: Vec::new(),
+                    ids,
+                }
             }
         }
     }
@@ -257,11 +260,11 @@ impl Bricks<'_> {
                 let tree = WideTree::of_cones(own, self.plan.statistics.margin());
                 let cones = tree.ids.iter().map(|index| own[*index as usize]).collect();
                 let ids = tree.ids.iter().map(|index| first + index).collect();
-                Brick { index: Index::WideTree(tree), spheres, cones, ids }
+                Brick { index: Index::WideTree(tree), primitive: Primitive::Cone, spheres, cones, ids }
             }
             _ => {
                 let ids = (first..first + own.len() as u32).collect();
-                Brick { index: Index::List, spheres, cones: own.to_vec(), ids }
+                Brick { index: Index::List, primitive: Primitive::Cone, spheres, cones: own.to_vec(), ids }
             }
         }
     }
@@ -344,7 +347,7 @@ impl BrickBounds {
             let center = 0.5 * (min + max);
             Self { center_min: center, center_max: center, min, max, ..Self::EMPTY }
         };
-        match brick.primitive() {
+        match brick.primitive {
             Primitive::Sphere => Self::of_spheres(&brick.spheres),
             Primitive::Cone => {
                 let all = Self::joined(brick.cones.iter().map(of_cone).collect());

@@ -9,6 +9,7 @@ use std::ops::Range;
 use std::sync::atomic::{AtomicU32, Ordering};
 
 use super::bricks::{Brick, Index};
+use super::structure::Primitive;
 use super::tiles::{TileLists, TileRange, TileView};
 use crate::geometry::cone::ConeInFrame;
 use crate::parallel::{for_each, map, map_chunks, map_parts, ranges, threads};
@@ -211,14 +212,17 @@ impl<'a> TileBricks<'a> {
         );
         let at = |index: usize| taken[taken.len() - 1 - index].id as usize;
         let (all, first) = self.cones;
-        let [of_spheres, of_cones] = if all.is_empty() { [taken.len(), 0] } else { [0, taken.len()] };
+        let (primitive, [of_spheres, of_cones]) = match all {
+            [] => (Primitive::Sphere, [taken.len(), 0]),
+            _ => (Primitive::Cone, [0, taken.len()]),
+        };
         let spheres = map(of_spheres, |index| self.spheres[at(index)]);
         let cones = map(of_cones, |index| all[at(index)]);
         let ids = taken.iter().rev().map(|seen| first + seen.id).collect();
         let nears = taken.iter().rev().map(|seen| seen.near).collect();
         let places = listed.into_iter().map(AtomicU32::into_inner).collect();
         let lists = TileLists { columns: columns as u32, starts, places, nears };
-        Brick { index: Index::Tiles(lists), spheres, cones, ids }
+        Brick { index: Index::Tiles(lists), primitive, spheres, cones, ids }
     }
 
     /// How many of the nearest spheres fit into a brick.

@@ -56,7 +56,8 @@ impl Headless {
             let _phase = self.phase("light");
             return smooth.draw(ids, layers, GpuError::Stopped, watch);
         }
-        if plan.by_tiles {
+        // Bricks of different shapes are not shaded together.
+        if plan.by_tiles && (scene.cones().is_empty() || !is_shaded) {
             let image = self.render_by_tiles(request, plan, upload_watch, watch).await?;
             return Ok(Picture::by_primary_rays(image));
         }

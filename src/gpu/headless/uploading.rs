@@ -45,7 +45,7 @@ impl Headless {
         let kinds = [accel].into_iter().chain(occluders).map(Accel::structure).collect();
         let watch: &mut UploadWatch<'_> = &mut go_on;
         self.alone(async |_: &mut Renderers| {
-            let of_cones = structures.accel.bricks().iter().find(|brick| brick.primitive() == Primitive::Cone);
+            let of_cones = structures.accel.bricks().iter().find(|brick| brick.primitive == Primitive::Cone);
             let renderer = self.layouts_of(kinds, of_cones.map(Brick::structure_of_cones)).await?;
             let all = self.upload_bricks(&renderer, scene, false, accel.into(), watch, &mut |_, _| {}).await?;
             let Some(accel) = occluders else {
@@ -198,7 +198,7 @@ impl Headless {
             let Some(brick) = bricks.next() else { break };
             drop(phase);
             structure = structure.with_nested(brick.borrow().is_nested());
-            primitives.push(brick.borrow().primitive());
+            primitives.push(brick.borrow().primitive);
             if number + 1 == total {
                 built(structure, has_several(&primitives));
             }

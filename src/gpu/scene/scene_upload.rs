@@ -155,11 +155,11 @@ impl<'a> SceneUpload<'a> {
     pub(crate) async fn brick(&mut self, brick: &Brick) -> Result<(), GpuError> {
         let (renderer, device, queue) = (self.renderer, self.device, self.queue);
         let Self { palette, uploaded, .. } = self;
-        let ids = match brick.primitive() {
+        let ids = match brick.primitive {
             Primitive::Sphere => self.ids.of(&brick.ids),
             Primitive::Cone => Cow::Borrowed(&brick.ids[..]),
         };
-        let primitive = brick.primitive();
+        let primitive = brick.primitive;
         let structure = match primitive {
             Primitive::Sphere => uploaded.space.structure.with_nested(brick.is_nested()),
             Primitive::Cone => brick.structure_of_cones(),
