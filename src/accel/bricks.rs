@@ -217,35 +217,26 @@ impl Bricks<'_> {
         let margin = plan.statistics.margin();
         let own = || -> Vec<[f32; 4]> { ids.iter().map(|id| spheres[*id as usize]).collect() };
         match plan.structure {
-            Structure::List | Structure::Tiles => {
-                Brick { index: Index::List, spheres: own(), primitive: Primitive::Sphere, cones: Vec::new(), ids }
-            }
+            Structure::List | Structure::Tiles => Brick { index: Index::List, spheres: own(), ids, ..Brick::default() },
             Structure::Grid | Structure::NestedGrid => {
                 let BuiltGrid { grid, spheres, ids } = build_grid(spheres, &ids, margin, plan.budget);
-                Brick { index: Index::Grid(grid), spheres, primitive: Primitive::Sphere, cones: Vec::new(), ids }
+                Brick { index: Index::Grid(grid), spheres, ids, ..Brick::default() }
             }
             Structure::WideTree => {
                 let own = own();
                 let margins = Margins { all: margin, crowd: plan.crowd };
                 let tree = WideTree::build_with(&own, margins);
                 Brick {
-                    primitive: Primitive::Sphere,
-                    cones: Vec::new(),
                     spheres: tree.ids.iter().map(|index| own[*index as usize]).collect(),
                     ids: tree.ids.iter().map(|index| ids[*index as usize]).collect(),
                     index: Index::WideTree(tree),
+                    ..Brick::default()
                 }
             }
             Structure::RayQuery => {
                 let own = own();
                 let boxes = query_boxes(&own, plan.box_margin * margin);
-                Brick {
-                    index: Index::RayQuery(boxes),
-                    spheres: own,
-                    primitive: Primitive::Sphere,
-                    cones: Vec::new(),
-                    ids,
-                }
+                Brick { index: Index::RayQuery(boxes), spheres: own, ids, ..Brick::default() }
             }
         }
     }
@@ -254,17 +245,16 @@ impl Bricks<'_> {
     fn build_cones(&self, part: Range<usize>) -> Brick {
         let own = &self.cones[part.clone()];
         let first = (self.spheres.len() + part.start) as u32;
-        let spheres = Vec::new();
         match &self.plan.cones {
             Some(plan) if plan.structure == Structure::WideTree => {
                 let tree = WideTree::of_cones(own, self.plan.statistics.margin());
                 let cones = tree.ids.iter().map(|index| own[*index as usize]).collect();
                 let ids = tree.ids.iter().map(|index| first + index).collect();
-                Brick { index: Index::WideTree(tree), primitive: Primitive::Cone, spheres, cones, ids }
+                Brick { index: Index::WideTree(tree), primitive: Primitive::Cone, cones, ids, ..Brick::default() }
             }
             _ => {
                 let ids = (first..first + own.len() as u32).collect();
-                Brick { index: Index::List, primitive: Primitive::Cone, spheres, cones: own.to_vec(), ids }
+                Brick { index: Index::List, primitive: Primitive::Cone, cones: own.to_vec(), ids, ..Brick::default() }
             }
         }
     }

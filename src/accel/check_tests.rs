@@ -10,7 +10,7 @@ use super::bricks::{Brick, Index};
 use super::grid::{Grid, GridBudget, LAST, MAX_CELLS, word};
 use super::grid_build::{BuiltGrid, build_grid};
 use super::plan::AccelPlan;
-use super::structure::{Primitive, Structure};
+use super::structure::Structure;
 use super::wide_tree::{Slot, WIDE_LEAF, WIDE_LEVELS, WideTree};
 use super::wide_tree_build::levels_by_halves;
 
@@ -248,10 +248,7 @@ fn built(spheres: &Spheres, structure: Structure) -> (Brick, f32) {
     if structure == Structure::Grid {
         let ids: Vec<u32> = (0..spheres.len() as u32).collect();
         let BuiltGrid { grid, spheres, ids } = build_grid(spheres, &ids, margin, budget(spheres));
-        return (
-            Brick { index: Index::Grid(grid), spheres, primitive: Primitive::Sphere, cones: Vec::new(), ids },
-            margin,
-        );
+        return (Brick { index: Index::Grid(grid), spheres, ids, ..Brick::default() }, margin);
     }
     let mut bricks: Vec<Brick> = plan.bricks(spheres).collect();
     assert_eq!(bricks.len(), 1);

@@ -155,7 +155,7 @@ impl BrickKind {
         all.filter(|kind| kind.exists())
     }
 
-    /// Whether the structure can find these shapes. Cells list spheres only.
+    /// True if the structure can find these shapes. Cells list spheres only.
     const fn exists(self) -> bool {
         match self.primitive {
             Primitive::Sphere => true,

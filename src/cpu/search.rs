@@ -236,7 +236,7 @@ impl<'a> Search<'a> {
         nearest
     }
 
-    /// Whether `test` is true for any shape. It may be true only for shapes that the ray hits before `t_max`. The ray
+    /// Returns true if `test` is for any shape. It may be true only for shapes that the ray hits before `t_max`. The ray
     /// is in the scene's frame.
     #[inline]
     pub(super) fn any(&self, ray: &Ray, t_max: f64, test: impl Fn(u32, Shape) -> bool) -> bool {

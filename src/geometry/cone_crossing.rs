@@ -21,7 +21,7 @@ pub fn intersect(ray: &Ray, cone: &ConeInFrame) -> Option<(f64, DVec3)> {
     crossings(ray, cone)?.into_iter().filter(|crossing| crossing.t > 0.0).find_map(|hit| Some((hit.t, hit.normal?)))
 }
 
-/// Where the line of a ray enters the cone and leaves it.
+/// The crossings at which the line of a ray enters the cone and leaves it.
 ///
 /// The side and the discs enclose a convex body, so a ray enters once and leaves once: after it has entered both the
 /// infinite cone, whose points have |p|² ≤ r², where p is the vector from the axis and r the radius there, and the slab

@@ -96,7 +96,7 @@ impl<'a> Subject<'a> {
         self.bounds
     }
 
-    /// Whether there are no shapes, so that the box itself is framed.
+    /// True if there are no shapes, so that the box itself is framed.
     pub(crate) fn is_box(&self) -> bool {
         self.spheres.is_empty() && self.cones.is_empty()
     }

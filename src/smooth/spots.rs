@@ -215,7 +215,7 @@ impl<'a> Finder<'a> {
         Some(Hits { id, count: 1, position: ray.at(distance), direction: ray.direction, distance, normal })
     }
 
-    /// Whether the normal of a cone turns so much within a pixel that it needs several rays, as at a rim.
+    /// Returns true if the normal of a cone turns so much within a pixel that it needs several rays, as at a rim.
     fn turns(&self, pixel: [u32; 2], id: u32) -> bool {
         let Some(shape @ Shape::Cone(_)) = (id != NO_ID).then(|| self.shapes.shape(id)) else { return false };
         let normal = |offset: DVec2| Some(crossing(&self.ray(pixel, offset)?, &shape)?.1);

@@ -41,7 +41,7 @@ pub(super) struct Interaction {
     pub(super) point: DVec3,
     /// Unit normal on the side from which the ray arrives.
     pub(super) normal: DVec3,
-    /// Whether the ray arrives from outside the shape, or from above the ground.
+    /// True if the ray arrives from outside the shape, or from above the ground.
     pub(super) is_outside: bool,
 }
 
@@ -106,7 +106,7 @@ pub(super) fn nearest(context: &LightingContext<'_>, surface_ray: &SurfaceRay) -
     })
 }
 
-/// Whether any surface is nearer than `t_max`, except the shape `exempt` and shapes equal to it.
+/// Returns true if any surface is nearer than `t_max`, except the shape `exempt` and shapes equal to it.
 pub(super) fn is_occluded(
     context: &LightingContext<'_>,
     surface_ray: &SurfaceRay,

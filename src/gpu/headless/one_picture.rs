@@ -56,8 +56,7 @@ impl Headless {
             let _phase = self.phase("light");
             return smooth.draw(ids, layers, GpuError::Stopped, watch);
         }
-        // Bricks of different shapes are not shaded together.
-        if plan.by_tiles && (scene.cones().is_empty() || !is_shaded) {
+        if plan.by_tiles && request.suits_tiles() {
             let image = self.render_by_tiles(request, plan, upload_watch, watch).await?;
             return Ok(Picture::by_primary_rays(image));
         }

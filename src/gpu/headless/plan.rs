@@ -90,6 +90,11 @@ impl<'a> PictureRequest<'a> {
         SmoothPicture::of(self.scene, &self.view, self.settings)
     }
 
+    /// True unless tiles would shade bricks of different shapes together, which they cannot.
+    pub(crate) fn suits_tiles(&self) -> bool {
+        self.scene.cones().is_empty() || !self.is_shaded
+    }
+
     /// The picture of ids from which a smooth picture follows.
     pub(crate) fn of_ids(&self, smooth: &SmoothPicture<'a>) -> Self {
         let (layers, is_shaded) = smooth.layers(self.layers);
@@ -118,8 +123,7 @@ impl RenderPlan {
         let PictureRequest { scene, host_bytes_per_pixel, .. } = *request;
         let layers = if keeps_rays { LayerSet::DATA } else { request.layers };
         let (limits, film) = (&device.limits, &request.view.film);
-        // Bricks of different shapes are not shaded together.
-        let may_be = !keeps_rays && request.is_only && (scene.cones().is_empty() || !request.is_shaded);
+        let may_be = !keeps_rays && request.is_only && request.suits_tiles();
         let by_tiles = may_be
             && match accel.choice {
                 AccelChoice::Auto => tile_plan::suits(scene, &request.view, &accel, device),

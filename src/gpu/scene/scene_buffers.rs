@@ -222,7 +222,7 @@ impl SceneBuffers {
         }
     }
 
-    /// Whether there are cones or cylinders, which devices do not light yet.
+    /// True if there are cones or cylinders, which devices do not light yet.
     pub(crate) fn has_cones(&self) -> bool {
         !self.summary.shapes.cones.is_empty()
     }
@@ -278,7 +278,7 @@ impl SceneBuffers {
         kinds
     }
 
-    /// Whether pipelines are needed that continue from the hits of other bricks of the same kind.
+    /// True if pipelines are needed that continue from the hits of other bricks of the same kind.
     pub(crate) fn has_several_bricks(&self) -> bool {
         has_several(&self.bricks.iter().map(|brick| brick.kind.primitive).collect::<Vec<_>>())
     }
@@ -289,7 +289,7 @@ impl SceneBuffers {
     }
 }
 
-/// Whether there are several bricks of the kind of shapes that is traced first, which is that of the first brick.
+/// True if there are several bricks of the kind of shapes that is traced first, which is that of the first brick.
 pub(crate) fn has_several(primitives: &[Primitive]) -> bool {
     primitives.iter().filter(|of| Some(of) == primitives.first().as_ref()).count() > 1
 }

@@ -49,7 +49,7 @@ pub(super) fn list(places: &Places<'_>, cube: u32) -> (Vec<[f32; 4]>, bool) {
     (near.iter().map(from_middle).collect(), is_cut)
 }
 
-/// Whether a ball counts near a cube.
+/// True if a ball counts near a cube.
 fn is_near(cells: &Cells, middle: DVec3, center: DVec3, radius: f64) -> bool {
     let beyond = ((center - middle).abs() - cells.side).max(DVec3::ZERO);
     let reach = radius + REACH * cells.side;
