@@ -107,7 +107,7 @@ fn structures(headless: &'static Headless) {
 fn smooth(headless: &'static Headless) {
     let studio = Studio { is_smooth: true, ..Studio::default() };
     let settings = RenderSettings { integrator: Integrator::Studio(studio), ..RenderSettings::default() };
-    for (spheres, cones, size) in [(200, 400, 0.2), (0, 300, 0.3), (3000, 2000, 0.05), (3, 4, 0.6)] {
+    for (spheres, cones, size) in [(200, 400, 0.2), (0, 300, 0.3), (3000, 2000, 0.05), (3, 4, 0.6), (200, 1, 0.05)] {
         let scene = mixed(spheres, cones, size, 9);
         let structure = cpu::SearchStructure::new(&scene).unwrap();
         for camera in cameras() {
