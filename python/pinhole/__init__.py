@@ -19,6 +19,7 @@ from ._pinhole import __version__, adapters, use_adapter, wait_for_threads
 from ._sheet import sheet
 from ._spheres import Spheres
 from ._tables import (
+    Arrows,
     Bonds,
     Box,
     ColorBy,
@@ -44,6 +45,7 @@ from ._tables import (
 )
 
 __all__ = [
+    "Arrows",
     "Bonds",
     "Box",
     "Camera",

@@ -150,6 +150,10 @@ class Bonds(Table, of="bonds"):
     """Bonds between spheres; an argument of ``Spheres``."""
 
 
+class Arrows(Table, of="arrows"):
+    """Arrows that show a vector of each sphere; an argument of ``Spheres``."""
+
+
 class Box(Table, of="box"):
     """The edges of the periodic cell; an argument of ``Spheres``."""
 

@@ -133,6 +133,9 @@ impl JoinedFrames {
         if let Some(key) = &frame.key {
             joined.0.add(key);
         }
+        if let Some(key) = &frame.arrow_key {
+            joined.0.add_arrows(key);
+        }
     }
 
     /// The camera of a text with its position, as JSON, which frames the spheres of all frames.

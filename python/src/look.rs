@@ -9,6 +9,7 @@ use crate::fault::{Fault, Outcome};
 use pinhole::camera::{Camera, CameraError};
 use pinhole::light::environment::Environment;
 use pinhole::{Encoding, Film, LayerSet, RenderSettings, Scene, View};
+use pinhole_data::added::ArrowKey;
 use pinhole_data::load::open_regular;
 use pinhole_figure::annotate::{AnnotationError, Annotations};
 use pinhole_figure::color_by::ColorKey;
@@ -68,8 +69,13 @@ pub(crate) struct Look {
 }
 
 impl Look {
-    /// Reads the text for a scene. `key` has the meaning of colours.
-    pub(crate) fn new(text: &SceneText, scene: &Scene, key: Option<&ColorKey>) -> Outcome<Self> {
+    /// Reads the text for a scene. `key` has the meaning of colours, and `arrows` that of arrows.
+    pub(crate) fn new(
+        text: &SceneText,
+        scene: &Scene,
+        key: Option<&ColorKey>,
+        arrows: Option<&ArrowKey>,
+    ) -> Outcome<Self> {
         let file = text.parse()?;
         let film = file.film;
         let free_sides = file.annotations.free_sides(key, film);
@@ -91,9 +97,9 @@ impl Look {
         let middle = scene.bounds_to_frame();
         let middle = 0.5 * (middle.min() + middle.max());
         let view = View::new(camera.as_ref(), film);
-        let made = file.annotations.annotations(key, &view, middle);
+        let made = file.annotations.annotations(key, arrows, &view, middle);
         let (annotations, more) = made.map_err(|error| match error {
-            AnnotationError::NoKey => Fault::Input(format!("{error}, with color_by or cmap")),
+            AnnotationError::NoKey => Fault::Input(format!("{error}, with color_by or cmap, or draw arrows")),
             error => Fault::input(error),
         })?;
         notes.extend(more);

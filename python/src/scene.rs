@@ -28,8 +28,9 @@ pub(crate) fn scene_of(mut loaded: Dataset, text: &SceneText, given: DataExtras)
     }
     let kinds = data.color_by_kinds(&loaded, None);
     loaded.notes.extend(kinds.map(|by| by.note_of_kinds("color=...")));
-    if let (Some(keys), Some(by)) = (&given.keys, &mut data.mapping.color) {
-        keys.apply_to(by);
+    if let Some(keys) = &given.keys {
+        data.mapping.color.iter_mut().for_each(|by| keys.apply_to(by));
+        keys.apply_to_arrows(&mut data.additions);
     }
     data.additions.keeps_radii = given.radii;
     data.scene(loaded, &OwnShapes::default()).map_err(|error| match error {

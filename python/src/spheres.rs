@@ -20,6 +20,7 @@ use pinhole::glam::DVec3;
 use pinhole::image::Layer;
 use pinhole::scene::{Centers as NewCenters, NewColors, SceneUpdate};
 use pinhole::{LayerSet, Scene};
+use pinhole_data::added::ArrowKey;
 use pinhole_data::load::{Column, ColumnValues, Dataset, Labels};
 use pinhole_figure::color_by::ColorKey;
 use pinhole_figure::framing::swept;
@@ -32,12 +33,13 @@ pub(crate) struct SphereData {
     scene: Mutex<Arc<Scene>>,
     /// The meaning of colours, if a column gives them.
     pub(crate) key: Option<ColorKey>,
+    pub(crate) arrow_key: Option<ArrowKey>,
     /// The loaded data, if they contain more than the scene.
     pub(crate) loaded: Option<Arc<Dataset>>,
     /// Whether the caller gave radii.
     has_radii: bool,
-    /// Whether there are bonds, which do not follow spheres that move.
-    has_bonds: bool,
+    /// Whether there are bonds or arrows, which do not follow spheres that move.
+    has_sticks: bool,
     z_is_up: bool,
     /// Notes for the user.
     #[pyo3(get)]
@@ -61,24 +63,25 @@ impl SphereData {
         let has_more = !loaded.columns.is_empty() || loaded.cell.is_some();
         let kept = has_more.then(|| Arc::new(loaded.clone()));
         let has_radii = given.radii;
-        let (scene, key, notes, bonds) = match given.colors {
+        let (scene, key, arrow_key, notes, bonds) = match given.colors {
             // Such colours need no list of distinct colours, which takes long to make.
             Some(colors) => {
                 let scene = Scene::from_parts(loaded.spheres, colors.into());
-                (scene.map_err(Fault::input)?, None, loaded.notes, None)
+                (scene.map_err(Fault::input)?, None, None, loaded.notes, None)
             }
             None => {
-                let DataScene { scene, color_key, notes, bonds, .. } = scene_of(loaded, text, given)?;
-                (scene, color_key, notes, bonds)
+                let DataScene { scene, color_key, arrow_key, notes, bonds, .. } = scene_of(loaded, text, given)?;
+                (scene, color_key, arrow_key, notes, bonds)
             }
         };
         let scene = Mutex::new(Arc::new(scene));
         Ok(Self {
             scene,
+            has_sticks: bonds.is_some_and(|bonds| bonds > 0) || arrow_key.is_some(),
             key,
+            arrow_key,
             loaded: kept,
             has_radii,
-            has_bonds: bonds.is_some_and(|bonds| bonds > 0),
             z_is_up,
             notes,
             on_device: OnDevice::default(),
@@ -102,7 +105,7 @@ impl SphereData {
 
     /// Reads the text of a scene file for a picture of the scene.
     pub(crate) fn look(&self, scene: &Scene, text: &SceneText) -> Outcome<Look> {
-        Look::new(text, scene, self.key.as_ref())
+        Look::new(text, scene, self.key.as_ref(), self.arrow_key.as_ref())
     }
 }
 
@@ -319,9 +322,10 @@ impl SphereData {
             let centers = narrow.as_deref().map(NewCenters::F32);
             let centers = centers.or(wide.as_deref().map(NewCenters::F64));
             let colors = colors.as_deref().map(NewColors::Rgba8);
-            if this.has_bonds && (centers.is_some() || radii.is_some()) {
+            if this.has_sticks && (centers.is_some() || radii.is_some()) {
                 return Err(Fault::Input(
-                    "these spheres have bonds, which would not follow them; make new Spheres(...) instead".to_owned(),
+                    "these spheres have bonds or arrows, which would not follow them; make new Spheres(...) instead"
+                        .to_owned(),
                 ));
             }
             let update = SceneUpdate { first, centers, radii: radii.as_deref(), colors };

@@ -205,6 +205,19 @@ same resized
 shot molecule-resized
 quits
 
+echo "== balls and sticks: what is seen while the view turns has cylinders, too =="
+opens helix.pdb --bonds --size 400x300
+waits "still: \([0-9]*\) of \1 samples" 300
+mark
+xdotool mousemove --window "$window" 300 250 mousedown 1
+xdotool mousemove --window "$window" 380 290
+sleep 1
+shot sticks-turning
+xdotool mouseup 1
+waits "still: \([0-9]*\) of \1 samples" 300
+grep -qi "error\|pipeline" said.txt && fail "the viewer complains about cylinders: $(cat said.txt)"
+quits
+
 echo "== flags: path tracing, a selection, colors, a given size =="
 opens helix.pdb --style path --samples 16 --select 'residue_number < 30 and name != "NA"' --color-by b_factor --legend \
     --scale-bar --camera orthographic --size 320x200

@@ -9,6 +9,7 @@ use std::time::{Duration, Instant};
 use eframe::egui;
 use pinhole_cli::viewing::{Facts, OpenView, RenderFlags, StillPicture, StillRenderer, ViewError};
 
+use pinhole::accel::Structure;
 use pinhole::camera::film::Film;
 use pinhole::camera::{CameraKind, View};
 use pinhole::gpu::{
@@ -161,8 +162,8 @@ struct Work {
     sender: Sender<Message>,
     shown: Option<OpenView>,
     still: Option<StillRenderer>,
-    /// The renderer of quick pictures, for a kind of camera.
-    renderer: Option<(CameraKind, Arc<LitRenderer>)>,
+    /// The renderer of quick pictures, for a kind of camera, with pipelines for cones or without.
+    renderer: Option<(CameraKind, bool, Arc<LitRenderer>)>,
     /// The current scene on the window's device.
     buffers: Option<Arc<SceneBuffers>>,
 }
@@ -250,16 +251,19 @@ impl Work {
         let Window { device, queue, .. } = window;
         let Some(shown) = &self.shown else { return Ok(None) };
         let camera = shown.camera().kind();
-        let before = self.renderer.take().filter(|(kind, _)| *kind == camera);
+        let has_cones = !shown.scene().cones().is_empty();
+        let before = self.renderer.take().filter(|(kind, of_cones, _)| (*kind, *of_cones) == (camera, has_cones));
         let renderer = match before {
-            Some((_, renderer)) => renderer,
+            Some((.., renderer)) => renderer,
             None => {
-                let cameras = vec![camera];
-                let options = RendererOptions { data_layers: true, cameras, ..RendererOptions::default() };
+                let (cameras, cone_structures) = (vec![camera], has_cones.then_some(Structure::WideTree));
+                let cone_structures = cone_structures.into_iter().collect();
+                let options =
+                    RendererOptions { data_layers: true, cameras, cone_structures, ..RendererOptions::default() };
                 Arc::new(LitRenderer::new(Renderer::new(device, &options).wait()?))
             }
         };
-        self.renderer = Some((camera, Arc::clone(&renderer)));
+        self.renderer = Some((camera, has_cones, Arc::clone(&renderer)));
         let buffers = match self.buffers.take() {
             Some(buffers) => buffers,
             None => Arc::new(SceneBuffers::new(renderer.renderer(), device, queue, shown.scene()).wait()?),

@@ -150,6 +150,7 @@ impl Overview {
             progress::frames(format!("looking at frame {} of {}", index + 1, framed.len()));
             let contents = frame(source, number)?;
             contents.color_key().into_iter().for_each(|key| overview.colors.add(key));
+            contents.details.arrow_key.iter().for_each(|key| overview.colors.add_arrows(key));
             if let (None, Some(kinds)) = (&overview.kinds, &contents.details.kinds) {
                 (overview.kinds, overview.kinds_from) = (Some(kinds.clone()), Some(number));
             }

@@ -14,6 +14,7 @@ use crate::terminal::failure::Failure;
 use crate::terminal::{profile, progress};
 use pinhole::image::color::LinearRgb;
 use pinhole::scene::Scene;
+use pinhole_data::added::ArrowKey;
 use pinhole_data::load::{self, Column, Dataset};
 use pinhole_data::select::KeptSpheres;
 use pinhole_figure::color_by::{ColorBy, ColorKey};
@@ -36,6 +37,8 @@ pub(crate) struct Details {
     pub(crate) has_atoms: bool,
     /// What colors mean, if a column gives them.
     pub(crate) color_key: Option<ColorKey>,
+    /// What arrows mean, if there are any.
+    pub(crate) arrow_key: Option<ArrowKey>,
     /// The colors by kind that no flag asked for.
     pub(crate) kinds: Option<ColorBy>,
     /// The color of spheres without one, if a key or a flag gives it.
@@ -183,11 +186,11 @@ impl Source {
             DataError::Select(error) if is_data => Error::new(error).context("--select").context(file_name()),
             error => Error::new(error).context(in_scene()),
         });
-        let DataScene { scene, color_key, columns, notes, kept, bonds, .. } = made?;
+        let DataScene { scene, color_key, arrow_key, columns, notes, kept, bonds, .. } = made?;
         let columns = if self.keeps_columns { columns } else { Vec::new() };
         let color = data.color;
         let details = Details { has_atoms, columns, kinds, color, notes, ..Details::default() };
-        Ok((scene, Details { color_key, kept, bonds, ..details }))
+        Ok((scene, Details { color_key, arrow_key, kept, bonds, ..details }))
     }
 
     /// Finds the data of a scene file; `None` if it has none.

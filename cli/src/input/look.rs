@@ -164,8 +164,20 @@ impl Source {
     /// Makes the input from what was read and from the look of the picture.
     pub(crate) fn input_with(&self, contents: Contents, look: Look) -> Result<Input, Failure> {
         let Contents { file, scene, details } = contents;
-        let Details { notes, files, sky_image, color_key, kinds, has_atoms, size_from, kept, bonds, color, .. } =
-            details;
+        let Details {
+            notes,
+            files,
+            sky_image,
+            color_key,
+            arrow_key,
+            kinds,
+            has_atoms,
+            size_from,
+            kept,
+            bonds,
+            color,
+            ..
+        } = details;
         let report = Report {
             path: self.path.display().to_string(),
             spheres: self.bricks.as_ref().map_or(scene.len() - scene.added(), |bricks| bricks.whole().count as usize),
@@ -188,6 +200,7 @@ impl Source {
             settings,
             encoding,
             color_key,
+            arrow_key,
             annotations,
             size_from,
             notes,

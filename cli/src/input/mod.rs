@@ -16,6 +16,7 @@ use pinhole::image::color::LinearRgb;
 use pinhole::image::encoding::Encoding;
 use pinhole::render::RenderSettings;
 use pinhole::scene::Scene;
+use pinhole_data::added::ArrowKey;
 use pinhole_figure::annotate::AnnotationPlan;
 use pinhole_figure::color_by::ColorKey;
 use pinhole_figure::scene_file::{Data, SceneFile};
@@ -39,6 +40,8 @@ pub(crate) struct Input {
     pub(crate) encoding: Encoding,
     /// What colors mean, if a column of the data gives them.
     pub(crate) color_key: Option<ColorKey>,
+    /// What arrows mean, if there are any.
+    pub(crate) arrow_key: Option<ArrowKey>,
     /// What the scene file draws over the picture.
     pub(crate) annotations: AnnotationPlan,
     /// Where the size of the picture comes from, for messages: a flag or a file.

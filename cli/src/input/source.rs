@@ -198,6 +198,7 @@ impl Source {
         let mut data = file.data()?.clone();
         data.frame = self.frame.or(data.frame);
         data.mapping.color.iter_mut().for_each(|color| self.joined.apply_to(color));
+        self.joined.apply_to_arrows(&mut data.additions);
         Some(data)
     }
 

@@ -119,6 +119,7 @@ pub(super) fn packed(overview: &Overview) -> (StoredOverview, Vec<u8>) {
         has_range: range.is_some(),
         categories: overview.colors.names().to_vec(),
         missing: overview.colors.missing(),
+        arrow_scale: overview.colors.arrow_scale().map(f64::to_bits),
         kinds_from: overview.kinds_from,
     };
     (stored, bytes)
@@ -137,6 +138,7 @@ fn unpacked(stored: &StoredOverview, bytes: &[u8]) -> Option<Overview> {
         return None;
     }
     let colors = JoinedKeys::new(range, stored.categories.clone(), stored.missing);
+    let colors = colors.with_arrow_scale(stored.arrow_scale.map(f64::from_bits));
     Some(Overview::stored(spheres.to_vec(), stored.added, colors, stored.kinds_from))
 }
 
@@ -148,6 +150,7 @@ mod tests {
     fn an_overview_is_read_back_to_the_bit() {
         for range in [None, Some([f64::MIN_POSITIVE, 0.1 + 0.2])] {
             let colors = JoinedKeys::new(range, vec!["a".to_owned()], Some([1, 2, 3]));
+            let colors = colors.with_arrow_scale(range.map(|[low, _]| low));
             let overview = Overview::stored(vec![[0.1, -0.0, 1e300, 3.0]; 3], 1, colors, Some(7));
             let (stored, bytes) = packed(&overview);
             let read = unpacked(&stored, &bytes).unwrap();

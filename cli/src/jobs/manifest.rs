@@ -81,6 +81,8 @@ pub(crate) struct StoredOverview {
     pub(crate) has_range: bool,
     pub(crate) categories: Vec<String>,
     pub(crate) missing: Option<[u8; 3]>,
+    /// The bits of the scale of arrows.
+    pub(crate) arrow_scale: Option<u64>,
     pub(crate) kinds_from: Option<usize>,
 }
 

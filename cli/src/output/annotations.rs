@@ -44,9 +44,9 @@ pub(crate) fn for_input(
     }
     let middle = input.scene.bounds_to_frame();
     let middle = 0.5 * (middle.min() + middle.max());
-    let made = plan.annotations(input.color_key.as_ref(), &input.view(), middle);
+    let made = plan.annotations(input.color_key.as_ref(), input.arrow_key.as_ref(), &input.view(), middle);
     let (annotations, notes) = made.map_err(|error| match error {
-        AnnotationError::NoKey => Failure::usage(format!("{error}, with --color-by COLUMN")),
+        AnnotationError::NoKey => Failure::usage(format!("{error}, with --color-by COLUMN, or draw --arrows VECTOR")),
         error => Failure::usage(error.to_string()),
     })?;
     notes.iter().for_each(|text| note(text));

@@ -157,7 +157,7 @@ fn a_selection_decides_what_is_seen_and_counted() {
 fn bonds_and_boxes_come_after_the_spheres_of_the_file() {
     let folder = folder();
     let (notes, line) = said(&folder, "row.xyz; --bonds; --box; --layer; id=id.npy");
-    assert_eq!(notes, "note: bonds across the borders of the periodic cell are not drawn");
+    assert_eq!(notes, "");
     assert!(line.starts_with("row.xyz: 4 atoms, 2 bonds; --style fast"), "{line}");
     let bytes = folder.read("id.npy");
     let ids = bytes[bytes.len() - 4 * 80 * 20..].chunks_exact(4);

@@ -42,6 +42,15 @@ pub enum ColumnError {
         /// The names of the columns of numbers.
         columns: String,
     },
+    /// The data has no vector of this name.
+    #[error("there is no vector `{name}`, with the columns {name}.x, {name}.y and {name}.z; {}",
+        if .vectors.is_empty() { "the data has none".to_owned() } else { format!("the vectors are {vectors}") })]
+    NoVector {
+        /// The name as given.
+        name: String,
+        /// The names of all vectors.
+        vectors: String,
+    },
     /// The column does not have one value for each sphere.
     #[error("the column `{name}` has {values} values, but there are {spheres} spheres")]
     Count {
@@ -70,16 +79,38 @@ pub fn column<'a>(name: &str, spheres: &SphereArray, columns: &'a [Column]) -> R
         let values = built_in_values(built_in, spheres);
         return Ok(NamedColumn { name: built_in.to_owned(), values: owned(values) });
     }
-    let inside = name.strip_prefix('|').and_then(|rest| rest.strip_suffix('|'));
-    if let Some((vector, components)) = inside.and_then(|name| components(name.trim(), columns)) {
-        for (column, _) in components {
-            check_count(column, spheres)?;
-        }
-        let [(_, x), (_, y), (_, z)] = components;
+    if within_bars(name).is_some_and(|name| components(name, columns).is_some()) {
+        let (vector, [x, y, z]) = vector(name, spheres, columns)?;
         let lengths = x.iter().zip(y).zip(z).map(|((x, y), z)| x.hypot(*y).hypot(*z));
         return Ok(NamedColumn { name: format!("|{vector}|"), values: owned(lengths.collect()) });
     }
     Err(unknown(name, columns))
+}
+
+/// A vector of each sphere: its name, spelled as in the data, and its three components.
+pub type Vector<'a> = (&'a str, [&'a [f64]; 3]);
+
+/// Finds a vector by its name `v` or `|v|`, as [`column()`] does for its length.
+///
+/// # Errors
+/// Returns an error if there is no such vector, or if it does not have one value for each sphere.
+pub fn vector<'a>(name: &str, spheres: &SphereArray, columns: &'a [Column]) -> Result<Vector<'a>, ColumnError> {
+    let name = name.trim();
+    let found = components(within_bars(name).unwrap_or(name), columns).ok_or_else(|| {
+        let lengths = vectors(columns);
+        let vectors = lengths.map(|length| length.trim_matches('|').to_owned()).collect::<Vec<_>>().join(", ");
+        ColumnError::NoVector { name: one_line(name), vectors }
+    });
+    let (name, components) = found?;
+    for (column, _) in components {
+        check_count(column, spheres)?;
+    }
+    Ok((name, components.map(|(_, values)| values)))
+}
+
+/// The name of a vector whose length a name such as `|v|` means.
+fn within_bars(name: &str) -> Option<&str> {
+    name.strip_prefix('|')?.strip_suffix('|').map(str::trim)
 }
 
 /// Finds a column of numbers, as [`column()`] does.
@@ -161,13 +192,18 @@ fn names<'a>(shown: impl Iterator<Item = &'a Column>, columns: &'a [Column]) -> 
     let mut names: Vec<String> = shown.map(|column| one_line(&column.name)).collect();
     let built_in = BUILT_IN.into_iter().filter(|name| named(name, columns).is_none());
     names.extend(built_in.map(str::to_owned));
-    let vectors = columns.iter().filter_map(|column| {
+    names.extend(vectors(columns));
+    names
+}
+
+/// The names of the lengths of all vectors, such as `|v|`.
+fn vectors(columns: &[Column]) -> impl Iterator<Item = String> {
+    let lengths = columns.iter().filter_map(|column| {
         let stem = column.name.strip_suffix(['x', 'X'])?;
         let stem = stem.strip_suffix(['.', '_']).unwrap_or(stem);
         components(stem, columns).map(|(vector, _)| format!("|{vector}|"))
     });
-    names.extend(vectors.filter(|name| name != "||"));
-    names
+    lengths.filter(|name| name != "||")
 }
 
 fn unknown(name: &str, columns: &[Column]) -> ColumnError {

@@ -1,20 +1,23 @@
-//! Shapes that are added to the spheres of data: the edges of the periodic cell, and bonds between atoms.
+//! Shapes that are added to the spheres of data: the edges of the periodic cell, bonds between atoms, and arrows.
 //!
-//! Edges and bonds are cylinders. Spheres at the corners of the cell, which join its edges, come after the spheres of the
+//! Edges and bonds are cylinders, and arrows cylinders and cones. Spheres at the corners of the cell, which join its edges, come after the spheres of the
 //! data. So the indices of these stay as they are, and added shapes do not affect properties of the data, such as the range
 //! of colours. [`Additions`] holds the choices.
 
+mod arrows;
 mod bonds;
+mod neighbours;
 mod shapes;
 
+pub use arrows::Arrows;
 pub use bonds::{BondLength, Bonds};
-pub use shapes::{AddError, AddedShapes};
+pub use shapes::{AddError, AddedShapes, ArrowKey};
 
 use glam::DVec3;
 
 use crate::load::{ColumnValues, Dataset};
 use pinhole::scene::Appearance;
-use shapes::Look;
+use shapes::{Look, between};
 
 /// The shapes to add to the spheres of data.
 #[derive(Clone, Debug, Default, PartialEq)]
@@ -23,8 +26,10 @@ pub struct Additions {
     pub cell: Option<CellEdges>,
     /// Bonds between atoms.
     pub bonds: Option<Bonds>,
-    /// Whether spheres keep their radii when bonds are drawn, because the user chose the radii. Otherwise atoms of
-    /// elements shrink by the factor 0.25, and other spheres by 0.5, so that the sticks between them can be seen.
+    /// Arrows that show a vector of each sphere.
+    pub arrows: Option<Arrows>,
+    /// Whether spheres keep their radii when bonds or arrows are drawn, because the user chose the radii. Otherwise atoms
+    /// of elements shrink by the factor 0.25, and other spheres by 0.5, so that the sticks between them can be seen.
     pub keeps_radii: bool,
 }
 
@@ -32,12 +37,12 @@ impl Additions {
     /// Returns true if nothing is added.
     #[must_use]
     pub fn is_empty(&self) -> bool {
-        self.cell.is_none() && self.bonds.is_none()
+        self.cell.is_none() && self.bonds.is_none() && self.arrows.is_none()
     }
 
-    /// Makes spheres of data smaller, if bonds need it and the user did not choose the radii.
+    /// Makes spheres of data smaller, if bonds or arrows need it and the user did not choose the radii.
     pub fn shrink(&self, loaded: &mut Dataset) {
-        if self.bonds.is_none() || self.keeps_radii {
+        if (self.bonds.is_none() && self.arrows.is_none()) || self.keeps_radii {
             return;
         }
         let labels = loaded.columns.iter().find_map(|column| match &column.values {
@@ -58,7 +63,8 @@ impl Additions {
     /// Returns the shapes to add to spheres of data with this appearance.
     ///
     /// # Errors
-    /// Returns an error if there is no cell to draw, if no bonds can be found, or if a length is out of range.
+    /// Returns an error if there is no cell to draw, if no bonds can be found, if there is no such vector, or if a length
+    /// is out of range.
     pub fn add(&self, data: &Dataset, appearance: &Appearance) -> Result<AddedShapes, AddError> {
         let mut added = AddedShapes::default();
         if let Some(bonds) = &self.bonds {
@@ -66,6 +72,9 @@ impl Additions {
         }
         if let Some(edges) = &self.cell {
             edges.add(data, &mut added)?;
+        }
+        if let Some(arrows) = &self.arrows {
+            arrows.add(data, &mut added)?;
         }
         Ok(added)
     }
@@ -122,7 +131,7 @@ impl CellEdges {
             for start in [DVec3::ZERO, one, other, one + other].into_iter().filter(|_| edge.length() > radius) {
                 let start = origin + start;
                 let refused = |error| AddError(format!("an edge of the periodic cell cannot be drawn: {error}"));
-                added.push([start, start + edge], radius, Look::Edge).map_err(refused)?;
+                added.push(between([start, start + edge], radius), Look::of_edges()).map_err(refused)?;
             }
         }
         let ends = [0.0, 1.0];

@@ -16,19 +16,36 @@ pub struct AddedShapes {
     /// The look of each stick.
     looks: Vec<Look>,
     pub(super) bonds: usize,
+    pub(super) arrow_key: Option<ArrowKey>,
     pub(super) notes: Vec<String>,
+}
+
+/// The meaning of the arrows of a picture.
+#[derive(Clone, Debug, PartialEq)]
+#[non_exhaustive]
+pub struct ArrowKey {
+    /// The name of the vector, spelled as in the data.
+    pub name: String,
+    /// The length of an arrow, in scene units, for a vector of length 1.
+    pub scale: f64,
+    /// The colour.
+    pub color: LinearRgb,
 }
 
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) enum Look {
     /// Like the sphere of the data with this index.
     Sphere(u32),
-    /// Like the edges of the cell: matt and opaque, in their colour.
-    Edge,
+    /// Matt and opaque, in this colour.
+    Color(LinearRgb),
 }
 
-/// The colour of edges in 8-bit sRGB: a dark grey, near that of outlines, which are as wide as an edge.
-const EDGE: [u8; 3] = [0x33, 0x38, 0x3f];
+impl Look {
+    /// The look of edges of the cell: a dark grey, near that of outlines, which are as wide as an edge.
+    pub(super) fn of_edges() -> Self {
+        Self::Color(LinearRgb::from_srgb8([0x33, 0x38, 0x3f]))
+    }
+}
 
 impl AddedShapes {
     /// Returns true if no shapes were added.
@@ -43,7 +60,7 @@ impl AddedShapes {
         self.corners.len()
     }
 
-    /// The sticks: first those of bonds, and then the edges of the cell.
+    /// The sticks of bonds, then the edges of the cell, and then the parts of arrows.
     #[must_use]
     pub fn sticks(&self) -> &[Cone] {
         &self.sticks
@@ -55,15 +72,20 @@ impl AddedShapes {
         self.bonds
     }
 
+    /// The meaning of the arrows, if there are any.
+    #[must_use]
+    pub fn arrow_key(&self) -> Option<&ArrowKey> {
+        self.arrow_key.as_ref()
+    }
+
     /// Notes for the user, one line each.
     #[must_use]
     pub fn notes(&self) -> &[String] {
         &self.notes
     }
 
-    /// Adds a cylinder. An error if it is out of range.
-    pub(super) fn push(&mut self, [start, end]: [DVec3; 2], radius: f64, look: Look) -> Result<(), ConeError> {
-        let stick = Cone::cylinder(start.to_array(), end.to_array(), radius);
+    /// Adds a cylinder or a cone. An error if it is out of range.
+    pub(super) fn push(&mut self, stick: Cone, look: Look) -> Result<(), ConeError> {
         stick.check()?;
         self.sticks.push(stick);
         self.looks.push(look);
@@ -91,15 +113,21 @@ impl AddedShapes {
         };
         let mut surfaces = appearance.surfaces().to_vec();
         let mut indices = appearance.surface_indices().map_or_else(|| vec![0; count], <[u32]>::to_vec);
-        let (edge_color, edge_surface) = (palette.len() as u32, surfaces.len() as u32);
-        palette.push(LinearRgb::from_srgb8(EDGE));
+        let own_surface = surfaces.len() as u32;
         surfaces.push(SurfaceProperties::default());
+        // Few colours are added, one after the other.
+        let mut own_color = |color: LinearRgb| {
+            if palette.last() != Some(&color) {
+                palette.push(color);
+            }
+            palette.len() as u32 - 1
+        };
         let matt: Vec<u32> = (0..surfaces.len()).map(|index| matt(&mut surfaces, index)).collect();
-        let of_corners = std::iter::repeat_n(Look::Edge, self.corners.len());
+        let of_corners = std::iter::repeat_n(Look::of_edges(), self.corners.len());
         for look in of_corners.chain(self.looks.iter().copied()) {
             let (color, surface) = match look {
                 Look::Sphere(id) => [&colors, &indices].map(|all| all.get(id as usize).copied().unwrap_or_default()),
-                Look::Edge => [edge_color, edge_surface],
+                Look::Color(color) => [own_color(color), own_surface],
             }
             .into();
             colors.push(color);
@@ -117,6 +145,11 @@ fn matt(surfaces: &mut Vec<SurfaceProperties>, index: usize) -> u32 {
     }
     surfaces.push(SurfaceProperties { opacity, ..SurfaceProperties::default() });
     surfaces.len() as u32 - 1
+}
+
+/// A cylinder between two points.
+pub(super) fn between([start, end]: [DVec3; 2], radius: f64) -> Cone {
+    Cone::cylinder(start.to_array(), end.to_array(), radius)
 }
 
 /// The reason why shapes cannot be added to the spheres of data, on one line.

@@ -1,6 +1,9 @@
 //! The contents of a file of spheres.
 
+use glam::DVec3;
+
 use super::elements::UnknownSpecies;
+use super::spacing;
 use pinhole::image::color::LinearRgb;
 use pinhole::scene::sphere::Sphere;
 use pinhole::scene::sphere_array::SphereArray;
@@ -23,6 +26,8 @@ pub struct Dataset {
     pub cell: Option<[[f64; 3]; 3]>,
     /// The corner of the cell from which the edge vectors start; zero if the file does not say where it is.
     pub cell_origin: [f64; 3],
+    /// The directions of the cell's edges in which the data repeats.
+    pub is_periodic: [bool; 3],
     /// Number of frames in the file; `None` if the file was not read to its end.
     pub frames: Option<usize>,
     /// Notes for the user that are not errors, one line each and without the file's name.
@@ -100,10 +105,25 @@ impl Dataset {
             columns: Vec::new(),
             cell: None,
             cell_origin: [0.0; 3],
+            is_periodic: [true; 3],
             frames: None,
             notes: Vec::new(),
             unknown: None,
         }
+    }
+
+    /// The median distance from a sphere to its nearest neighbour; the diameter of the largest sphere if all are in one
+    /// place.
+    #[must_use]
+    pub fn spacing(&self) -> f64 {
+        let at = |index| self.spheres.at(index);
+        let center = |index| {
+            let [x, y, z, _] = at(index);
+            DVec3::new(x, y, z)
+        };
+        let count = self.spheres.len();
+        let largest = || (0..count).map(|index| at(index)[3]).fold(0.0, f64::max);
+        2.0 * spacing::radius(count, center).unwrap_or_else(largest)
     }
 
     /// Returns the values of the column with this name.

@@ -76,6 +76,25 @@ fn extended_columns_in_any_order() {
 }
 
 #[test]
+fn the_directions_in_which_a_cell_repeats() {
+    let of = |pbc: &str| read(format!("1\nLattice=\"1 0 0 0 1 0 0 0 1\" {pbc}\nC 0 0 0\n").as_bytes(), 0);
+    let found = |pbc: &str| of(pbc).unwrap().1.is_periodic;
+    assert_eq!(found(""), [true; 3]);
+    assert_eq!(found("pbc=\"T F T\""), [true, false, true]);
+    assert_eq!(found("pbc=[False, 1, 0]"), [false; 3]);
+    assert_eq!(found("pbc='[False, 1, 0]'"), [false, true, false]);
+    assert!(of("pbc=\"T T\"").unwrap_err().to_string().ends_with("pbc=T T is not a list of three values T or F"));
+    let dump = |ends: &str| {
+        let text = format!(
+            "ITEM: TIMESTEP\n0\nITEM: NUMBER OF ATOMS\n1\nITEM: BOX BOUNDS{ends}\n0 1\n0 1\n0 1\n\
+                            ITEM: ATOMS id x y z\n1 0 0 0\n"
+        );
+        load::from_bytes(text.as_bytes(), "a.dump", &load::Options::default()).unwrap().is_periodic
+    };
+    assert_eq!([dump(""), dump(" pp ff sm")], [[true; 3], [true, false, false]]);
+}
+
+#[test]
 fn unknown_species_are_reported_once_each() {
     let (_, loaded) = read(b"4\n\nA 0 0 0\nO 0 0 0\nB 0 0 0\nA 1 1 1\n", 0).unwrap();
     // B is not in the list, because it is boron.

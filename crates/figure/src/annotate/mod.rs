@@ -17,6 +17,7 @@
 
 mod canvas;
 mod font;
+mod key_arrow;
 mod legend;
 mod legend_scale;
 mod place;
@@ -28,6 +29,7 @@ use pinhole::image::encoding::Encoding;
 
 pub use canvas::Canvas;
 pub use font::missing_characters;
+pub use key_arrow::KeyArrow;
 pub use legend::Legend;
 pub use place::{Anchor, Panel, Position, PositionError};
 pub use plan::{AnnotationError, AnnotationPlan, LegendPlan, ScaleBarPlan, TextPlan};
@@ -42,6 +44,8 @@ use place::{GAP, PADDING, origin};
 pub enum Annotation {
     /// The meaning of colours.
     Legend(Legend),
+    /// The length of the arrows of a vector.
+    KeyArrow(KeyArrow),
     /// The size of a length in the picture.
     ScaleBar(ScaleBar),
     /// A text.
@@ -88,6 +92,7 @@ impl Annotations {
     pub fn texts(&self) -> impl Iterator<Item = &str> {
         self.items.iter().map(|item| match item {
             Annotation::Legend(legend) => legend.title(),
+            Annotation::KeyArrow(arrow) => &arrow.name,
             Annotation::ScaleBar(bar) => &bar.unit,
             Annotation::Label(label) => &label.text,
         })
@@ -112,6 +117,7 @@ impl Annotations {
         let em = self.em(size);
         let block = |item: &Annotation| match item {
             Annotation::Legend(legend) => (legend.position, legend.block(em, size)),
+            Annotation::KeyArrow(arrow) => (arrow.position, arrow.block(em)),
             Annotation::ScaleBar(bar) => (bar.position, bar.block(em)),
             Annotation::Label(label) => (label.position, label.block(em)),
         };
@@ -129,25 +135,28 @@ impl Annotations {
 }
 
 impl Annotations {
-    /// The part of a picture of this size in pixels that must stay free so that nothing lies under the legend: on the
-    /// left, right, bottom and top, as fractions of the width and the height. Only the side with the smallest part is
-    /// free. All are 0 if this part is larger than `most`, or if there is no legend.
+    /// The part of a picture of this size in pixels that must stay free so that nothing lies under the legend, its colours
+    /// and its arrow: on the left, right, bottom and top, as fractions of the width and the height. Only the side with
+    /// the smallest part is free. All are 0 if this part is larger than `most`, or if there is no legend.
     pub(crate) fn room_of_legend(&self, [width, height]: [u32; 2], most: f64) -> [f64; 4] {
         let none = [0.0; 4];
-        let is_legend = |item: &Annotation| matches!(item, Annotation::Legend(_));
-        let Some(index) = self.items.iter().position(is_legend) else { return none };
+        let is_legend = |item: &Annotation| matches!(item, Annotation::Legend(_) | Annotation::KeyArrow(_));
         let em = self.em([width, height]);
         let blocks = self.blocks([width, height]);
-        let [left, top] = origin(&blocks, index, em, [width, height]).map(|place| place as f64);
-        let block = &blocks[index].1;
         let around = f64::from((PADDING + GAP) * em) + 1.0;
-        let [width, height] = [width, height].map(f64::from);
-        let sides = [
-            (left + f64::from(block.width) + around) / width,
-            (width - left + around) / width,
-            (height - top + around) / height,
-            (top + f64::from(block.height) + around) / height,
-        ];
+        let sides_of = |index: usize| {
+            let [left, top] = origin(&blocks, index, em, [width, height]).map(|place| place as f64);
+            let block = &blocks[index].1;
+            let [width, height] = [width, height].map(f64::from);
+            [
+                (left + f64::from(block.width) + around) / width,
+                (width - left + around) / width,
+                (height - top + around) / height,
+                (top + f64::from(block.height) + around) / height,
+            ]
+        };
+        let parts = (0..self.items.len()).filter(|index| is_legend(&self.items[*index])).map(sides_of);
+        let Some(sides) = parts.reduce(|a, b| std::array::from_fn(|side| a[side].max(b[side]))) else { return none };
         let least = (0..4).min_by(|a, b| sides[*a].total_cmp(&sides[*b]));
         match least.filter(|side| sides[*side] <= most) {
             Some(side) => std::array::from_fn(|i| if i == side { sides[i] } else { 0.0 }),

@@ -3,6 +3,7 @@
 use glam::DVec3;
 use serde::{Deserialize, Serialize};
 
+use super::key_arrow::KeyArrow;
 use super::scale_bar::{ScaleBar, ScaleBarError, pixels_per_unit};
 use super::{Annotation, Annotations, Label, Legend, Panel, Position, missing_characters};
 use crate::color_by::ColorKey;
@@ -11,6 +12,7 @@ use pinhole::camera::View;
 use pinhole::camera::film::{Film, YAxis};
 use pinhole::geometry::subject::Subject;
 use pinhole::image::color::LinearRgb;
+use pinhole_data::added::ArrowKey;
 
 /// The annotations that a user wants, from a scene file or flags.
 #[derive(Clone, Debug, Default, PartialEq)]
@@ -21,6 +23,8 @@ pub struct AnnotationPlan {
     pub scale_bar: Option<ScaleBarPlan>,
     /// Labels.
     pub labels: Vec<Label>,
+    /// The vector that arrows show, for which a legend needs room.
+    pub arrows: Option<String>,
     /// The look of all text.
     pub text: TextPlan,
 }
@@ -64,11 +68,15 @@ pub struct ScaleBarPlan {
 #[non_exhaustive]
 pub enum AnnotationError {
     /// A legend is wanted, but colours do not come from a column.
-    #[error("a legend shows what colors mean, but no column gives colors; color the spheres by a column")]
+    #[error("a legend shows what colors or arrows mean, but no column gives colors; color the spheres by a column")]
     NoKey,
     /// A scale bar is impossible.
     #[error(transparent)]
     ScaleBar(#[from] ScaleBarError),
+}
+
+fn no_arrow(error: &ScaleBarError) -> String {
+    format!("the legend has no arrow: {error}")
 }
 
 impl AnnotationPlan {
@@ -78,27 +86,32 @@ impl AnnotationPlan {
         self.legend.is_none() && self.scale_bar.is_none() && self.labels.is_empty()
     }
 
-    /// Returns the labels and the legend, which do not depend on the camera.
-    fn without_camera(&self, key: Option<&ColorKey>) -> Result<Annotations, AnnotationError> {
+    /// Returns the labels and the legend of colours, which do not depend on the camera.
+    fn without_camera(&self, key: Option<&ColorKey>) -> Annotations {
         let color = self.text.color.map(LinearRgb::to_srgb8);
         let mut drawn = Annotations { color, ..Annotations::default() };
         drawn.text_scale = self.text.scale.unwrap_or(drawn.text_scale);
         drawn.panel = self.text.panel.unwrap_or(drawn.panel);
         drawn.items = self.labels.iter().cloned().map(Annotation::Label).collect();
-        if let Some(LegendPlan { title, position }) = &self.legend {
-            let mut legend = Legend::new(key.ok_or(AnnotationError::NoKey)?.clone());
+        if let (Some(LegendPlan { title, position }), Some(key)) = (&self.legend, key) {
+            let mut legend = Legend::new(key.clone());
             legend.title.clone_from(title);
             legend.position = position.unwrap_or(legend.position);
             drawn = drawn.with(Annotation::Legend(legend));
         }
-        Ok(drawn)
+        drawn
     }
 
     /// The parts of a film that a camera must leave free so that no sphere lies under the legend, for
     /// [`Subject::with_free_sides`]. All are 0 if there is no legend, no key, or no room.
     #[must_use]
     pub fn free_sides(&self, key: Option<&ColorKey>, film: Film) -> [f64; 4] {
-        let drawn = self.without_camera(key).unwrap_or_default();
+        let mut drawn = self.without_camera(key);
+        if let (Some(legend), Some(vector)) = (&self.legend, &self.arrows) {
+            let mut arrow = KeyArrow::longest(vector, film.width());
+            arrow.position = legend.position.unwrap_or(arrow.position);
+            drawn = drawn.with(Annotation::KeyArrow(arrow));
+        }
         let size = [film.width(), film.height()];
         let [left, right, bottom, top] = drawn.room_of_legend(size, Subject::MOST_FREE);
         match film.y_axis() {
@@ -108,18 +121,35 @@ impl AnnotationPlan {
     }
 
     /// Returns the annotations of a picture, and notes for the user. `key` explains the colours, if a column gives
-    /// them. A scale bar is true at the depth of `middle`, the middle of the scene.
+    /// them, and `arrows` the arrows. A scale bar and the arrow of a legend are true at the depth of `middle`, the middle
+    /// of the scene.
     ///
     /// # Errors
-    /// Returns an error if there is no key for a legend, or a scale bar has no meaning or does not fit.
+    /// Returns an error if there is nothing for a legend to explain, or a scale bar has no meaning or does not fit.
     pub fn annotations(
         &self,
         key: Option<&ColorKey>,
+        arrows: Option<&ArrowKey>,
         view: &View<'_>,
         middle: DVec3,
     ) -> Result<(Annotations, Vec<String>), AnnotationError> {
         let mut notes = Vec::new();
-        let mut drawn = self.without_camera(key)?;
+        let mut drawn = self.without_camera(key);
+        if let Some(legend) = &self.legend {
+            if key.is_none() && arrows.is_none() {
+                return Err(AnnotationError::NoKey);
+            }
+            let width = view.film.width();
+            let arrow = |key| Ok(KeyArrow::new(key, pixels_per_unit(view, middle)?, width));
+            match arrows.map(arrow).transpose() {
+                Ok(Some(Some(mut arrow))) => {
+                    arrow.position = legend.position.unwrap_or(arrow.position);
+                    drawn = drawn.with(Annotation::KeyArrow(arrow));
+                }
+                Ok(_) => {}
+                Err(error) => notes.push(no_arrow(&error)),
+            }
+        }
         if let Some(ScaleBarPlan { length, unit, position }) = &self.scale_bar {
             let scale = pixels_per_unit(view, middle)?;
             let mut bar = ScaleBar::new(scale, *length, unit.clone(), view.film.width())?;

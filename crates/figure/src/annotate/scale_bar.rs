@@ -100,13 +100,7 @@ impl ScaleBar {
     /// The text at the bar: the length and the unit.
     #[must_use]
     pub fn text(&self) -> String {
-        let length = short(self.length);
-        let length = match length.split_once('e') {
-            Some(("1", exponent)) => format!("10{}", raised(exponent)),
-            Some((digits, exponent)) => format!("{digits}·10{}", raised(exponent)),
-            None => length,
-        };
-        format!("{length} {}", self.unit).trim_end().to_owned()
+        format!("{} {}", number(self.length), self.unit).trim_end().to_owned()
     }
 
     pub(super) fn block(&self, em: f32) -> Block {
@@ -121,6 +115,16 @@ impl ScaleBar {
         block.width = width;
         block.height = bottom;
         block
+    }
+}
+
+/// A number of an annotation, such as 2·10⁷.
+pub(super) fn number(value: f64) -> String {
+    let text = short(value);
+    match text.split_once('e') {
+        Some(("1", exponent)) => format!("10{}", raised(exponent)),
+        Some((digits, exponent)) => format!("{digits}·10{}", raised(exponent)),
+        None => text,
     }
 }
 

@@ -1,11 +1,12 @@
-//! Colours with one meaning in several frames, and colours for data without colours by the kinds of their spheres.
+//! Colours and arrows with one meaning in several frames, and colours for data without colours by the kinds of their spheres.
 
 use super::coloring::order;
 use super::key::{ColorKey, KeyKind};
 use super::{ColorBy, Limit, Limits};
+use pinhole_data::added::{Additions, ArrowKey};
 use pinhole_data::load::Dataset;
 
-/// The meaning of colours in all frames of a trajectory, so that equal values have equal colours in each frame.
+/// The meaning of colours and arrows in all frames of a trajectory, so that equal values look equal in each frame.
 ///
 /// If the values of any frame are on a scale, the scale covers the range of all frames. It includes whole numbers that
 /// are categories in other frames. Otherwise the categories of all frames are used, in the order of a single frame.
@@ -33,13 +34,39 @@ pub struct JoinedKeys {
     /// The names of the categories, without a particular order.
     names: Vec<String>,
     missing: Option<[u8; 3]>,
+    /// The smallest scale of arrows.
+    arrow_scale: Option<f64>,
 }
 
 impl JoinedKeys {
     /// Makes keys from the results of [`JoinedKeys::range`], [`JoinedKeys::names`] and [`JoinedKeys::missing`].
     #[must_use]
     pub fn new(range: Option<[f64; 2]>, names: Vec<String>, missing: Option<[u8; 3]>) -> Self {
-        Self { range, names, missing }
+        Self { range, names, missing, arrow_scale: None }
+    }
+
+    /// The same keys with the result of [`JoinedKeys::arrow_scale`].
+    #[must_use]
+    pub fn with_arrow_scale(self, arrow_scale: Option<f64>) -> Self {
+        Self { arrow_scale, ..self }
+    }
+
+    /// The smallest scale of the arrows of all frames; `None` if no frame has arrows.
+    #[must_use]
+    pub fn arrow_scale(&self) -> Option<f64> {
+        self.arrow_scale
+    }
+
+    /// Adds the scale of the arrows in a frame.
+    pub fn add_arrows(&mut self, key: &ArrowKey) {
+        self.arrow_scale = Some(self.arrow_scale.map_or(key.scale, |scale| scale.min(key.scale)));
+    }
+
+    /// Gives a frame's arrows the scale of all frames. If no frame with arrows was added, nothing changes.
+    pub fn apply_to_arrows(&self, additions: &mut Additions) {
+        if let Some(arrows) = &mut additions.arrows {
+            arrows.scale = self.arrow_scale.or(arrows.scale);
+        }
     }
 
     /// The lowest and the highest end of the scales of all frames; `None` if no frame has a scale.

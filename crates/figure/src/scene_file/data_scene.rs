@@ -6,7 +6,7 @@ use super::span::DEFAULT_COLOR;
 use crate::color_by::{ColorBy, ColorByError, ColorKey};
 use pinhole::image::color::LinearRgb;
 use pinhole::scene::{Colors, Scene, SceneError};
-use pinhole_data::added::AddError;
+use pinhole_data::added::{AddError, ArrowKey};
 use pinhole_data::load::{Column, ColumnValues, Dataset, Labels};
 use pinhole_data::select::{KeptSpheres, SelectError};
 
@@ -19,6 +19,8 @@ pub struct DataScene {
     pub scene: Scene,
     /// What colours mean, if a column gives them.
     pub color_key: Option<ColorKey>,
+    /// What arrows mean, if there are any.
+    pub arrow_key: Option<ArrowKey>,
     /// The columns of the spheres of the data, without those that were not selected or left out.
     pub columns: Vec<Column>,
     /// Notes for the user, such as names that do not occur in the data.
@@ -36,7 +38,7 @@ pub enum DataError {
     /// The selection does not apply to the data.
     #[error("`select`: {0}")]
     Select(#[from] SelectError),
-    /// Bonds or the edges of the cell cannot be added.
+    /// Bonds, the edges of the cell or arrows cannot be added.
     #[error(transparent)]
     Add(#[from] AddError),
     /// A column cannot decide what it should.
@@ -64,13 +66,13 @@ impl Data {
 
     /// Makes the scene of data. `select` and `leave_out` take spheres away. Columns decide colours, radii, opacities and
     /// strengths of light, then the tables of elements, then the file, and last the keys for all spheres. Opacities of
-    /// the file are multiplied by those of the keys. Bonds and the edges of the cell come last.
+    /// the file are multiplied by those of the keys. Bonds, the edges of the cell and arrows come last.
     ///
     /// `own` are the shapes of the scene file. If there are none, the array of the data is not copied.
     ///
     /// # Errors
     /// If a key names a column that the data does not have, or whose values cannot be used; if it selects nothing; if
-    /// the data lacks what bonds or a box need; or if a sphere is out of range.
+    /// the data lacks what bonds, a box or arrows need; or if a sphere is out of range.
     pub fn scene(&self, mut loaded: Dataset, own: &OwnShapes) -> Result<DataScene, DataError> {
         let kept = self.select.as_ref().map(|select| select.apply(&mut loaded)).transpose()?;
         let has_radii = self.mapping.radius.is_some();
@@ -115,7 +117,8 @@ impl Data {
         }
         let scene = own.scene_with(loaded.spheres, added.sticks(), appearance)?.with_added(added.sphere_count());
         let bonds = self.additions.bonds.as_ref().map(|_| added.bonds());
-        Ok(DataScene { scene, color_key, columns: loaded.columns, notes, kept, bonds })
+        let arrow_key = added.arrow_key().cloned();
+        Ok(DataScene { scene, color_key, arrow_key, columns: loaded.columns, notes, kept, bonds })
     }
 
     /// The colours of spheres that no column colours.

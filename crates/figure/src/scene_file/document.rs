@@ -6,7 +6,7 @@ use serde::{Deserialize, Serialize};
 use toml::Spanned;
 
 use super::camera_path::CameraPathTable;
-use super::data::{BondsValue, BoxValue, Data, Element, ElementTable, positive};
+use super::data::{ArrowsValue, BondsValue, BoxValue, Data, Element, ElementTable, positive};
 use super::lighting::{DirectionalTable, GroundTable, IntegratorKind, LightTable, SkyTable};
 use super::mapping::{ByColumn, ColumnTable};
 use super::materials::{Materials, over};
@@ -71,6 +71,8 @@ pub(crate) struct Document {
     pub(super) cell: Option<BoxValue>,
     /// Whether bonds are drawn, and between which spheres.
     pub(super) bonds: Option<BondsValue>,
+    /// The vector of each sphere that an arrow shows, and how.
+    pub(super) arrows: Option<ArrowsValue>,
     /// The column that gives colours, and how.
     pub(super) color_by: Option<ByColumn<ColorBy>>,
     /// The column that gives radii.
@@ -128,7 +130,7 @@ pub(crate) struct Document {
 }
 
 /// The keys at the top of a scene file that apply to its data, beside the tables `[elements.NAME]`.
-pub const KEYS_OF_DATA: [&str; 18] = [
+pub const KEYS_OF_DATA: [&str; 19] = [
     "format",
     "frame",
     "topology",
@@ -147,6 +149,7 @@ pub const KEYS_OF_DATA: [&str; 18] = [
     "select",
     "box",
     "bonds",
+    "arrows",
 ];
 
 impl Document {
@@ -190,6 +193,7 @@ impl Document {
         let select = self.select.as_ref().map(|text| text.parse().map_err(|error| places.span("select").error(error)));
         let cell = self.cell.as_ref().map(BoxValue::edges).transpose();
         let bonds = self.bonds.as_ref().map(BondsValue::bonds).transpose();
+        let arrows = self.arrows.as_ref().map(ArrowsValue::arrows).transpose();
         let within = |table: &'static str| {
             move |error| match error {
                 // A factor alone stands at the key itself.
@@ -200,6 +204,7 @@ impl Document {
         let additions = Additions {
             cell: cell.map_err(within("box"))?.flatten(),
             bonds: bonds.map_err(within("bonds"))?.flatten(),
+            arrows: arrows.map_err(within("arrows"))?,
             keeps_radii: false,
         };
         let format = self.format.as_ref().map(|name| {
@@ -245,6 +250,7 @@ impl Document {
             legend: self.legend.as_ref().map(|Table(legend)| legend.clone()),
             scale_bar: self.scale_bar.as_ref().map(|Table(bar)| bar.clone()),
             labels: self.labels.iter().map(|Table(label)| label.clone()).collect(),
+            arrows: self.arrows.as_ref().map(|arrows| arrows.vector().to_owned()),
             text,
         })
     }

@@ -15,7 +15,7 @@ mod shapes;
 pub(crate) mod span;
 
 pub use camera_path::parse_camera_path;
-pub(crate) use data::{BondsTable, BoxTable};
+pub(crate) use data::{ArrowsTable, BondsTable, BoxTable};
 pub use data::{Data, Element};
 pub use data_scene::{DataError, DataScene};
 pub(crate) use document::Document;

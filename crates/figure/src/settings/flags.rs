@@ -14,7 +14,7 @@ use crate::style::Style;
 pub enum Group {
     /// Which file is read, and how.
     Input = 1,
-    /// Selection, cell and bonds.
+    /// Selection, cell, bonds and arrows.
     Structure = 2,
     /// Colours, radii and opacities from data.
     Color = 4,
@@ -250,6 +250,10 @@ flags! {
              except between hydrogens; atoms become smaller unless their radii are given [without a factor: 1.2]";
         "--bond-length" "bonds", Words(words::bond_length), "LENGTH",
             "Draw bonds between all spheres that are closer than this length, whatever they are";
+        "--arrows" "arrows", Words(words::arrows), "VECTOR[,KEY=VALUE]...",
+            "Draw an arrow for the vector of each sphere, such as forces for the columns forces.x, forces.y and forces.z; \
+             scale=LENGTH of an arrow for a vector of length 1, radius=, color=, min= length of a vector, at=start or middle; \
+             spheres become smaller unless their radii are given; --legend explains the length";
     }
     Color {
         "--color-by" "color_by.column", Text, "COLUMN",

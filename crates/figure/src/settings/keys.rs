@@ -7,7 +7,7 @@ use serde::de::value::{MapAccessDeserializer, MapDeserializer, SeqDeserializer};
 use serde::de::{DeserializeOwned, Deserializer, Error, IntoDeserializer, Visitor};
 use serde::forward_to_deserialize_any;
 
-use crate::scene_file::{BondsTable, BoxTable, ConeTable, CylinderTable, Document, SphereTable};
+use crate::scene_file::{ArrowsTable, BondsTable, BoxTable, ConeTable, CylinderTable, Document, SphereTable};
 
 /// A name that no key and no kind has.
 const UNKNOWN: &str = "\0";
@@ -19,6 +19,7 @@ pub fn keys_of(table: &str) -> Vec<&'static str> {
     match table {
         "box" => keys_in::<BoxTable>(""),
         "bonds" => keys_in::<BondsTable>(""),
+        "arrows" => keys_in::<ArrowsTable>(""),
         "spheres" => keys_in::<SphereTable>(""),
         "cylinders" => keys_in::<CylinderTable>(""),
         "cones" => keys_in::<ConeTable>(""),

@@ -47,7 +47,7 @@ pub(crate) struct Joined<'a> {
 
 /// Keys whose value in a later layer takes the place of the whole value in an earlier one, because the parts of two such
 /// values exclude each other.
-const WHOLE: [&str; 7] = ["bonds", "box", "camera", "emission_by", "ground", "opacity_by", "radius_by"];
+const WHOLE: [&str; 8] = ["arrows", "bonds", "box", "camera", "emission_by", "ground", "opacity_by", "radius_by"];
 
 /// Keys of colours, which may be written as CSS colours.
 const COLORS: [&str; 7] = ["ambient", "background", "color", "horizon", "missing", "nadir", "zenith"];

@@ -137,6 +137,20 @@ pub(super) fn bond_length(text: &str) -> Result<String, String> {
     positive(text).map(|length| format!("{{ length = {length} }}"))
 }
 
+/// Reads `VECTOR[,KEY=VALUE]...`.
+pub(super) fn arrows(text: &str) -> Result<String, String> {
+    let mut parts = text.split(',').map(str::trim);
+    let vector = parts.next().unwrap_or_default();
+    let pair = |part: &str| {
+        let (key, value) = part.split_once('=').ok_or_else(|| format!("`{part}` is not KEY=VALUE, such as scale=2"))?;
+        let value = value.trim().parse::<f64>().map_or_else(|_| quoted(value.trim()), toml_number);
+        Ok(format!("{} = {value}", quoted(key.trim())))
+    };
+    let pairs: Vec<String> = parts.map(pair).collect::<Result<_, String>>()?;
+    let vector = quoted(vector);
+    Ok(if pairs.is_empty() { vector } else { format!("{{ vector = {vector}, {} }}", pairs.join(", ")) })
+}
+
 /// Reads the ends of a range: numbers, percentiles, or nothing.
 pub(super) fn range(text: &str) -> Result<String, String> {
     text.parse::<crate::color_by::Limits>().map_err(|error| error.to_string())?;

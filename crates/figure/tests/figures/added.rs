@@ -138,7 +138,79 @@ fn colours_by_data_and_opacities_reach_the_sticks() {
     assert!((scene.surface(1).opacity - 0.2).abs() < 1e-6);
     let last = scene.shape_count() as u32 - 1;
     assert_eq!((scene.surface(last).opacity, scene.color(last)), (1.0, scene.color(13)));
-    assert!(made.notes[made.notes.len() - 1].contains("borders of the periodic cell"));
+}
+
+/// A chain of carbon atoms across the borders of its cell: the bond across is half a stick at both ends.
+#[test]
+fn a_bond_across_the_cell_is_two_halves() {
+    let chain = |head: &str, first: &str| format!("3\n{head}\nC {first} 0 0\nC 2 0 0\nC 3.5 0 0\n");
+    let (head, none) = ("Lattice=\"4.5 0 0 0 9 0 0 0 9\"", "Lattice=\"4.5 0 0 0 9 0 0 0 9\" pbc=\"F T T\"");
+    let (across, bonds) = scene(read(&chain(head, "0.5")), &self::bonds());
+    assert_eq!((bonds, across.cones().len()), (3, 4));
+    let middles = [2, 3].map(|index| ends(&across.cones()[index]).0[1]);
+    for (middle, wanted) in middles.into_iter().zip([-0.25, 4.25]) {
+        let middle = middle + across.origin();
+        assert!(middle.distance(DVec3::new(wanted, 0.0, 0.0)) < 1e-5, "{middle}");
+    }
+    assert_eq!(scene(read(&chain(none, "0.5")), &self::bonds()).1, 2);
+    // An atom that has left the cell is bonded as at its place in the cell, and beside it by a whole stick.
+    let (left, bonds) = scene(read(&chain(head, "5")), &self::bonds());
+    assert_eq!((bonds, left.cones().len()), (3, 4));
+    let length = |cone| ends(cone).0[0].distance(ends(cone).0[1]);
+    assert_eq!(left.cones().iter().filter(|cone| length(cone) > 0.75).count(), 2);
+}
+
+const FORCES: &str = "4\nProperties=species:S:1:pos:R:3:forces:R:3\n\
+                      O 0 0 0 0 0 4\nO 2 0 0 0 0 -2\nO 4 0 0 0 0 0\nO 6 0 0 nan 0 0\n";
+
+fn arrows(text: &str) -> Result<DataScene, DataError> {
+    let file = SceneFile::parse(&format!("data = 'a.xyz'\n{text}")).unwrap();
+    file.data().unwrap().scene(read(FORCES), &OwnShapes::default())
+}
+
+#[test]
+fn arrows_show_vectors() {
+    let made = arrows("arrows = 'forces'").unwrap();
+    // Three quarters of a vector's length 4 are 1.5 times the distance 2. Spheres are smaller, as with bonds.
+    let key = made.arrow_key.unwrap();
+    assert_eq!((key.name.as_str(), key.scale), ("forces", 0.75));
+    assert_eq!(made.notes, ["1 of 4 spheres have no arrow: their forces is not a number"]);
+    assert!((made.scene.spheres()[0][3] - 0.375).abs() < 1e-6);
+    let cones: Vec<_> = made.scene.cones().iter().map(ends).collect();
+    let place = |z: f64, x: f64| DVec3::new(x, 0.0, z) - made.scene.origin();
+    let near = |found: DVec3, wanted: DVec3| assert!(found.distance(wanted) < 1e-5, "{found} {wanted}");
+    assert_eq!(cones.len(), 4);
+    near(cones[0].0[0], place(0.0, 0.0));
+    near(cones[0].0[1], cones[1].0[0]);
+    near(cones[1].0[1], place(3.0, 0.0));
+    near(cones[3].0[1], place(-1.5, 2.0));
+    assert!((cones[0].1[0] - 0.16).abs() < 1e-6 && cones[1].1[1] == 0.0);
+    // An arrow that is shorter than a head has only a smaller head.
+    let made = arrows("arrows = { vector = '|Forces|', scale = 0.1, at = 'middle', color = 'red', min = 3 }").unwrap();
+    let cones: Vec<_> = made.scene.cones().iter().map(ends).collect();
+    assert_eq!(cones.len(), 1);
+    near(cones[0].0[0], DVec3::new(0.0, 0.0, -0.2) - made.scene.origin());
+    assert!((cones[0].1[0] / (0.4 * 2.2 / 5.0) - 1.0).abs() < 1e-5);
+    assert_eq!(made.scene.color(4).to_srgb8(), [255, 0, 0]);
+    let none = arrows("select = 'x > 3 and x < 5'\narrows = 'forces'").unwrap();
+    assert_eq!(none.notes, ["there are no arrows: no sphere has a forces that is longer than 0"]);
+    assert!(none.arrow_key.is_none() && none.scene.cones().is_empty());
+}
+
+#[test]
+fn arrows_that_cannot_be_drawn_are_refused() {
+    let refused = |text: &str| arrows(text).unwrap_err().to_string();
+    assert_eq!(
+        refused("arrows = 'force'"),
+        "`arrows`: there is no vector `force`, with the columns force.x, force.y and force.z; the vectors are forces"
+    );
+    let long = refused("arrows = { vector = 'forces', scale = 1e9 }");
+    assert!(long.starts_with("`arrows`: the arrow of sphere 0 cannot be drawn: its length"), "{long}");
+    for bad in
+        ["3", "{ scale = 2 }", "{ vector = 'f', scale = 0 }", "{ vector = 'f', at = 'end' }", "{ vector = 'f', a = 1 }"]
+    {
+        assert!(SceneFile::parse(&format!("data = 'a.xyz'\narrows = {bad}")).is_err(), "{bad}");
+    }
 }
 
 #[test]

@@ -1,16 +1,16 @@
 //! Legends, scale bars and labels in pictures.
 
-use pinhole::camera::{FisheyeCamera, OrthographicCamera, PinholeCamera, Pose};
+use pinhole::camera::{FisheyeCamera, OrthographicCamera, PanoramaCamera, PinholeCamera, Pose};
 use pinhole::glam::DVec3;
 use pinhole::image::encoding::Bits;
 use pinhole::{Encoding, Film, Image, SphereArray, ToneCurve, View};
-use pinhole_data::load::{Column, ColumnValues, Labels};
+use pinhole_data::load::{self, Column, ColumnValues, Labels};
 use pinhole_figure::annotate::{
     Anchor, Annotation, AnnotationError, AnnotationPlan, Annotations, Canvas, Label, Legend, LegendPlan, Panel,
     Position, ScaleBar, ScaleBarPlan, pixels_per_unit,
 };
 use pinhole_figure::color_by::{ColorBy, ColorKey};
-use pinhole_figure::scene_file::SceneFile;
+use pinhole_figure::scene_file::{OwnShapes, SceneFile};
 use pinhole_figure::write::png as png_file;
 
 use crate::pictures::{plain, read_png};
@@ -215,12 +215,39 @@ fn a_plan_becomes_annotations() {
         ..AnnotationPlan::default()
     };
     let key = categories(&["A"]);
-    let (drawn, notes) = plan.annotations(Some(&key), &view, DVec3::ZERO).unwrap();
+    let (drawn, notes) = plan.annotations(Some(&key), None, &view, DVec3::ZERO).unwrap();
     assert_eq!(drawn.items.len(), 3);
     assert!(notes[0].contains("is true at the distance of the middle of the scene, 50"));
     assert!(notes[1].contains("lacks 水"), "{notes:?}");
-    let none = plan.annotations(None, &view, DVec3::ZERO);
+    let none = plan.annotations(None, None, &view, DVec3::ZERO);
     assert_eq!(none.unwrap_err(), AnnotationError::NoKey);
+}
+
+#[test]
+fn the_arrow_of_a_legend_is_as_long_as_those_of_the_picture() {
+    let film = Film::new(400, 300).unwrap();
+    let pose = Pose::looking_at([0.0, 0.0, 50.0], [0.0; 3], [0.0, 1.0, 0.0]).unwrap();
+    let camera = OrthographicCamera::new(pose, [20.0, 15.0]).unwrap();
+    let view = View::new(&camera, film);
+    let text = "1\nProperties=species:S:1:pos:R:3:force:R:3\nO 0 0 0 0 0 4\n";
+    let loaded = load::from_bytes(text.as_bytes(), "a.xyz", &load::Options::default()).unwrap();
+    let file = SceneFile::parse("data = 'a.xyz'\narrows = { vector = 'force', scale = 0.3 }\n[legend]").unwrap();
+    let key = file.data().unwrap().scene(loaded, &OwnShapes::default()).unwrap().arrow_key.unwrap();
+    // A unit of length has 10 pixels, and an eighth of the width 50.
+    let (drawn, notes) = file.annotations.annotations(None, Some(&key), &view, DVec3::ZERO).unwrap();
+    let [Annotation::KeyArrow(arrow)] = &drawn.items[..] else { panic!("{drawn:?}") };
+    assert_eq!((arrow.value(), arrow.position, notes), (10.0, Position::RIGHT, Vec::new()));
+    assert!((arrow.pixels() - 30.0).abs() < 1e-9);
+    let mut rgb = vec![255; 3 * 400 * 300];
+    drawn.draw_over([400, 300], &Encoding::default(), &mut rgb);
+    let green = rgb.chunks_exact(3).filter(|pixel| *pixel == arrow.color).count();
+    assert!((20..200).contains(&green), "{green}");
+    // The camera leaves room for it, and a panorama, whose scale differs everywhere, has none.
+    assert!(file.annotations.free_sides(None, film)[1] > 0.1);
+    let panorama = PanoramaCamera::new(pose);
+    let (drawn, notes) =
+        file.annotations.annotations(None, Some(&key), &View::new(&panorama, film), DVec3::ZERO).unwrap();
+    assert!(drawn.is_empty() && notes[0].starts_with("the legend has no arrow: "), "{notes:?}");
 }
 
 #[test]

@@ -25,11 +25,12 @@ const MATERIAL: &str = "src/scene/material.rs";
 const CAMERA_PATH: &str = "crates/figure/src/scene_file/camera_path.rs";
 
 /// The tables of a scene file, each with the file and the structs that have its keys.
-const TABLES: [(&str, &str, &[&str]); 33] = [
+const TABLES: [(&str, &str, &[&str]); 34] = [
     ("", FILES, &["Document"]),
     ("elements.NAME", DATA, &["ElementTable"]),
     ("box", DATA, &["BoxTable"]),
     ("bonds", DATA, &["BondsTable"]),
+    ("arrows", DATA, &["ArrowsTable"]),
     ("color_by", "crates/figure/src/color_by/mod.rs", &["ColorBy"]),
     ("radius_by", MAPPING, &["RadiusBy"]),
     ("opacity_by", "crates/figure/src/scene_file/mapping.rs", &["ColumnTable"]),
@@ -258,7 +259,7 @@ fn write_flags(page: &mut String) {
             let title = match flag.group {
                 Group::Input => "Input",
                 Group::Camera => "Camera",
-                Group::Structure => "Selection, cell and bonds",
+                Group::Structure => "Selection, cell, bonds and arrows",
                 Group::Color => "Colours, radii and opacities from data",
                 Group::Annotation => "Annotations",
                 Group::Look => "Light and style",

@@ -113,6 +113,16 @@ impl Cell {
     }
 }
 
+/// The directions in which the cell of a dump repeats: all, unless the item names the boundaries, `pp` if they are periodic.
+fn periodic_of(item: &str) -> [bool; 3] {
+    let words: Vec<&str> = item.split_whitespace().collect();
+    let is_boundary = |word: &&str| word.len() == 2 && word.bytes().all(|byte| b"pfsm".contains(&byte));
+    match words.last_chunk::<3>() {
+        Some(ends) if ends.iter().all(is_boundary) => ends.map(|ends| ends == "pp"),
+        _ => [true; 3],
+    }
+}
+
 /// Sorts the rows by the column `id`, if there is one. Returns the former index of each row; `None` if the rows were
 /// in order.
 fn by_id(table: &mut Table) -> Option<Vec<u32>> {

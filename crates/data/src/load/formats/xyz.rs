@@ -105,6 +105,7 @@ fn read_frame(frame: &FrameText<'_>, options: &Options) -> Result<Dataset, LoadE
     let refused = |message: String| LoadError::line(lines_before, one_line(&message));
     let declared = Columns::of_comment(&comment).map_err(refused)?;
     let cell = cell_of(&comment).map_err(refused)?;
+    let periodic = periodic_of(&comment).map_err(refused)?;
     let origin = origin_of(&comment).map_err(refused)?;
     let rows = Rows { text: lines.rest, lines_before, may_be_longer: declared.is_plain };
     let table = Table { columns: rows.read(&declared.fields)? };
@@ -119,6 +120,7 @@ fn read_frame(frame: &FrameText<'_>, options: &Options) -> Result<Dataset, LoadE
         })?;
     loaded.cell = cell;
     loaded.cell_origin = origin.filter(|_| cell.is_some()).unwrap_or_default();
+    loaded.is_periodic = periodic;
     let values = Lines::new(lines.rest).next().map_or(0, |line| Values { rest: line }.count());
     if declared.is_plain && values > declared.fields.len() {
         loaded.notes.push(format!(
@@ -236,6 +238,25 @@ fn origin_of(comment: &str) -> Result<Option<[f64; 3]>, String> {
     match numbers_of(text).as_deref() {
         Some(&[x, y, z]) => Ok(Some([x, y, z])),
         _ => Err(format!("Origin={} is not a list of three finite numbers", shortened(text))),
+    }
+}
+
+/// The directions in which the cell repeats: all, unless `pbc` has three values such as `T T F`.
+fn periodic_of(comment: &str) -> Result<[bool; 3], String> {
+    let Some(text) = value_of("pbc", comment) else {
+        return Ok([true; 3]);
+    };
+    let value = |text: &str| match text {
+        "T" | "True" | "true" | "TRUE" | "1" => Some(true),
+        "F" | "False" | "false" | "FALSE" | "0" => Some(false),
+        _ => None,
+    };
+    let values =
+        text.split(|c: char| c.is_whitespace() || c == ',' || c == '[' || c == ']').filter(|text| !text.is_empty());
+    match values.map(value).collect::<Option<Vec<bool>>>().as_deref() {
+        Some(&[all]) => Ok([all; 3]),
+        Some(&[x, y, z]) => Ok([x, y, z]),
+        _ => Err(format!("pbc={} is not a list of three values T or F", shortened(text))),
     }
 }
 

@@ -2,7 +2,7 @@
 
 use std::io;
 
-use super::{Cell, Shape, by_id, too_few_atoms, wrong_text};
+use super::{Cell, Shape, by_id, periodic_of, too_few_atoms, wrong_text};
 use crate::load::dataset::{ColumnValues, Dataset};
 use crate::load::elements::appearance;
 use crate::load::error::{LoadError, LoadErrorKind};
@@ -94,7 +94,7 @@ fn find(lines: &mut LineReader<'_>, last: Option<usize>) -> io::Result<FrameInde
 fn read(frame: &FrameText<'_>, options: &Options) -> Result<Dataset, LoadError> {
     let mut lines = Lines::new(without_byte_order_mark(frame.text));
     let mut line = frame.lines_before;
-    let mut cell = None;
+    let (mut cell, mut is_periodic) = (None, [true; 3]);
     let names = loop {
         let Some(text) = lines.next() else {
             return Err(cut_off(frame.lines_before + 1));
@@ -104,6 +104,7 @@ fn read(frame: &FrameText<'_>, options: &Options) -> Result<Dataset, LoadError> 
         let item = text.strip_prefix("ITEM:").map(str::trim).unwrap_or_default();
         if item.starts_with("BOX BOUNDS") {
             let shape = Shape::of_item(item);
+            is_periodic = periodic_of(item);
             let bounds = [(); 3].map(|()| lines.next().unwrap_or_default());
             cell = Some(Cell::of_dump(shape, bounds).map_err(|index| {
                 let what = format!("is not a line of the box; {}", shape.values());
@@ -144,7 +145,7 @@ fn read(frame: &FrameText<'_>, options: &Options) -> Result<Dataset, LoadError> 
         }
         _ => error,
     })?;
-    (loaded.cell, loaded.cell_origin) = (Some(cell.edges), cell.origin);
+    (loaded.cell, loaded.cell_origin, loaded.is_periodic) = (Some(cell.edges), cell.origin, is_periodic);
     if is_noted {
         loaded.notes.push("the types are the symbols of chemical elements, and are taken as such".to_owned());
     }
