@@ -12,6 +12,10 @@ const MAX_LENGTH: f64 = (1_u64 << 40) as f64;
 /// The most by which length and larger radius differ, as a factor.
 const MOST_ASPECT: f64 = 1e4;
 
+/// The length of a side between two spheres, as a part of its larger radius, below which the spheres alone look the same:
+/// the gap between them is as deep as f32 rounds their places, about 1e-7 of the radius.
+const SHORTEST_SIDE: f64 = 1e-3;
+
 /// By how much limits are wider for cones that were rounded to f32, as a factor.
 const IN_FRAME: f64 = 1.0 + 1.0 / (1 << 20) as f64;
 
@@ -75,6 +79,31 @@ impl Cone {
     #[must_use]
     pub const fn with_caps(self, caps: Caps) -> Self {
         Self { caps, ..self }
+    }
+
+    /// A cone or cylinder with round ends, which is the convex hull of two spheres (x, y, z, radius): its side, without
+    /// caps, and the spheres at its ends that stick out of it. The side touches both spheres in circles, and is smooth
+    /// there. One sphere that contains the other comes alone, a radius of 0 makes a tip without a sphere, and a side is left
+    /// out where the spheres are so close that it would not be seen. Nothing is checked.
+    ///
+    /// These are the segments of Han, Wald, Usher, Wu, Wang, Pascucci, Hansen and Johnson 2019, "Ray Tracing Generalized
+    /// Tube Primitives: Method and Applications".
+    #[must_use]
+    pub fn rounded(first: [f64; 4], second: [f64; 4]) -> (Option<Self>, [Option<[f64; 4]>; 2]) {
+        let [(start, r0), (end, r1)] = [first, second].map(|[x, y, z, radius]| (DVec3::new(x, y, z), radius));
+        let axis = end - start;
+        let distance = axis.length();
+        if distance <= (r0 - r1).abs() {
+            return (None, if r0 >= r1 { [Some(first), None] } else { [None, Some(second)] });
+        }
+        // The sine of the angle between the side and the axis, and its cosine.
+        let sine = (r0 - r1) / distance;
+        let cosine = ((1.0 - sine) * (1.0 + sine)).sqrt();
+        let along = axis * (sine / distance);
+        let [start, end] = [start + along * r0, end + along * r1].map(|place| place.to_array());
+        let is_seen = distance * cosine > SHORTEST_SIDE * r0.max(r1);
+        let side = Self { start, end, radii: [r0 * cosine, r1 * cosine], caps: Caps::None };
+        (is_seen.then_some(side), [first, second].map(|sphere| (sphere[3] != 0.0).then_some(sphere)))
     }
 
     /// Checks that the cone is in range.
@@ -182,5 +211,41 @@ mod tests {
         let far = Cone::cylinder([1e9, 0.0, 0.0], [1e9 + 1.0, 0.0, 0.0], 0.5);
         assert!(far.in_frame(DVec3::ZERO).is_err());
         assert!(far.in_frame(DVec3::new(1e9, 0.0, 0.0)).is_ok());
+    }
+
+    #[test]
+    fn the_side_of_a_cone_with_round_ends_touches_its_spheres() {
+        for [first, second] in [
+            [[0.0, 0.0, 0.0, 0.5], [3.0, 0.0, 0.0, 0.5]],
+            [[1.0, 2.0, 3.0, 1.0], [2.0, 4.0, 1.0, 0.25]],
+            [[1.0, 2.0, 3.0, 0.25], [2.0, 4.0, 1.0, 1.0]],
+            [[0.0, 0.0, 0.0, 2.0], [0.0, 1.1, 0.0, 1.0]],
+            [[0.0, 0.0, 0.0, 1.0], [0.0, 0.0, 2.0, 0.0]],
+        ] {
+            let (side, spheres) = Cone::rounded(first, second);
+            let cone = side.unwrap();
+            assert_eq!((cone.check(), cone.caps), (Ok(()), Caps::None));
+            assert_eq!(spheres, [Some(first), (second[3] > 0.0).then_some(second)]);
+            let [start, end] = [cone.start, cone.end].map(DVec3::from);
+            let axis = (end - start).normalize();
+            let across = axis.any_orthonormal_vector();
+            let slope = (cone.radii[0] - cone.radii[1]) / (end - start).length();
+            let normal_of_side = (across + axis * slope).normalize();
+            for ([x, y, z, radius], middle, of_cone) in [(first, start, cone.radii[0]), (second, end, cone.radii[1])] {
+                let from_center = middle + across * of_cone - DVec3::new(x, y, z);
+                assert!((from_center.length() - radius).abs() < 1e-12, "the circle is on the sphere");
+                assert!(from_center.distance(normal_of_side * radius) < 1e-12, "normals are equal there");
+            }
+        }
+    }
+
+    #[test]
+    fn a_cone_with_round_ends_may_be_one_sphere_or_two() {
+        let (big, inside) = ([0.0, 0.0, 0.0, 1.0], [0.5, 0.0, 0.0, 0.5]);
+        assert_eq!(Cone::rounded(big, inside), (None, [Some(big), None]));
+        assert_eq!(Cone::rounded(inside, big), (None, [None, Some(big)]));
+        assert_eq!(Cone::rounded(big, big), (None, [Some(big), None]));
+        let near = [0.0, 1e-4, 0.0, 1.0];
+        assert_eq!(Cone::rounded(big, near), (None, [Some(big), Some(near)]));
     }
 }
