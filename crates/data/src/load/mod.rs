@@ -14,6 +14,8 @@
 //! ```
 
 mod atoms;
+mod cone_kind;
+mod cones;
 mod dataset;
 mod elements;
 mod error;
@@ -29,6 +31,8 @@ mod spacing;
 mod table;
 mod topology;
 
+pub use cone_kind::ConeKind;
+pub use cones::ConeSet;
 pub use dataset::{Column, ColumnValues, Dataset, Labels};
 pub(crate) use elements::{Covalent, covalent};
 pub use error::{LoadError, LoadErrorKind, Place};

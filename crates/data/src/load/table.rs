@@ -28,6 +28,9 @@ pub(super) struct TableColumn {
     pub(super) full: Option<f64>,
 }
 
+/// Columns, and notes about what is none.
+pub(super) type Columns = (Vec<TableColumn>, Vec<String>);
+
 impl TableColumn {
     pub(super) fn numbers(name: impl Into<String>, numbers: Vec<f64>) -> Self {
         Self { name: name.into(), values: ColumnValues::Numbers(numbers), full: None }
@@ -133,24 +136,24 @@ impl Table {
         listed(self.columns.iter().map(|column| shortened(&column.name)), 16)
     }
 
-    fn position(&self, names: &[&str]) -> Option<usize> {
+    pub(super) fn position(&self, names: &[&str]) -> Option<usize> {
         names.iter().find_map(|name| self.columns.iter().position(|column| column.plain_name() == *name))
     }
 
     /// Takes the first column with one of these names out of the table.
-    fn take(&mut self, names: &[&str]) -> Option<TableColumn> {
+    pub(super) fn take(&mut self, names: &[&str]) -> Option<TableColumn> {
         self.position(names).map(|index| self.columns.remove(index))
     }
 
     /// Takes the first complete set of three columns out of the table.
-    fn take_set(&mut self, sets: Sets) -> Option<[TableColumn; 3]> {
+    pub(super) fn take_set(&mut self, sets: Sets) -> Option<[TableColumn; 3]> {
         let set = sets.iter().find(|set| set.iter().all(|name| self.position(&[*name]).is_some()))?;
         let [first, second, third] = set.map(|name| self.take(&[name]));
         Some([first?, second?, third?])
     }
 
     /// Takes the radii, with the name of their column.
-    fn radii(&mut self) -> Result<Option<(String, Vec<f64>)>, LoadError> {
+    pub(super) fn radii(&mut self) -> Result<Option<(String, Vec<f64>)>, LoadError> {
         let (column, factor) = match (self.take(RADII), self.position(DIAMETERS)) {
             (Some(column), _) => (column, 1.0),
             (None, Some(diameters)) => (self.columns.remove(diameters), 0.5),
@@ -168,7 +171,7 @@ impl Table {
     }
 
     /// Takes the colours: three columns of numbers, or one of CSS colours.
-    fn colors(&mut self, notes: &mut Vec<String>) -> Option<Vec<LinearRgb>> {
+    pub(super) fn colors(&mut self, notes: &mut Vec<String>) -> Option<Vec<LinearRgb>> {
         if let Some(index) = self.position(COLOR_NAMES)
             && let ColumnValues::Labels(labels) = &self.columns[index].values
             && let Some(colors) = css_colors(labels)
@@ -328,7 +331,7 @@ impl Dataset {
     }
 }
 
-fn numbers_of(column: TableColumn) -> Result<Vec<f64>, LoadError> {
+pub(super) fn numbers_of(column: TableColumn) -> Result<Vec<f64>, LoadError> {
     match column.values {
         ColumnValues::Numbers(numbers) => Ok(numbers),
         ColumnValues::Labels(labels) => {

@@ -4,13 +4,14 @@
 //! `#` are comments. The last comment before the first row may have the names of the columns. Names mean the same as in
 //! all tables. A missing value (empty, `NaN`, `NA`, `null`) is NaN.
 
+use crate::load::cone_kind::ConeKind;
 use crate::load::dataset::{ColumnValues, Dataset};
 use crate::load::error::LoadError;
 use crate::load::format::Options;
 use crate::load::labels::LabelsBuilder;
 use crate::load::numbers::number;
 use crate::load::rows::{Lines, Values};
-use crate::load::table::{Table, TableColumn};
+use crate::load::table::{Columns, Table, TableColumn};
 use crate::load::{rows, table};
 use pinhole::internals::text::without_byte_order_mark;
 
@@ -20,15 +21,12 @@ use pinhole::internals::text::without_byte_order_mark;
 /// Returns an error if columns have no names, rows differ in length, or positions or radii are not numbers.
 pub fn read(bytes: &[u8], options: &Options) -> Result<Dataset, LoadError> {
     let text = without_byte_order_mark(bytes);
-    let first = First::of(text, &options.columns)?;
-    let mut columns: Vec<_> = first.names.iter().map(|name| ColumnBuilder::new(name)).collect();
-    // A column is text if any of its values is. That is known only after all rows, which are then read again.
-    if read_rows(&first, &mut columns)? {
-        columns.iter_mut().for_each(ColumnBuilder::clear);
-        read_rows(&first, &mut columns)?;
-    }
-    let columns = first.names.iter().zip(columns).map(|(name, column)| column.into_column(name));
-    let table = Table { columns: columns.collect() };
+    let example = |columns| {
+        let names = if columns == 3 { "x,y,z" } else { "x,y,z,radius" };
+        format!("name its {columns} columns in their order, such as with --columns {names}")
+    };
+    let first = First::of(text, &options.columns, example)?;
+    let table = Table { columns: columns_of(&first)? };
     let line_of = |wanted: usize| {
         let (mut row, mut line) = (0, 0);
         drop(first.each_row(|number, _| {
@@ -41,6 +39,24 @@ pub fn read(bytes: &[u8], options: &Options) -> Result<Dataset, LoadError> {
         line
     };
     rows::into_loaded(table, options, line_of)
+}
+
+/// Reads the columns of a table of cylinders or cones.
+pub(in crate::load) fn columns(bytes: &[u8], kind: ConeKind) -> Result<Columns, LoadError> {
+    let header = kind.names().join(",").replace('.', "_");
+    let first = First::of(without_byte_order_mark(bytes), &[], |_| format!("add one, such as {header}"))?;
+    Ok((columns_of(&first)?, Vec::new()))
+}
+
+/// Reads all rows. A column is text if any of its values is, which is known only after all rows; they are then read again.
+fn columns_of(first: &First<'_>) -> Result<Vec<TableColumn>, LoadError> {
+    let mut columns: Vec<_> = first.names.iter().map(|name| ColumnBuilder::new(name)).collect();
+    if read_rows(first, &mut columns)? {
+        columns.iter_mut().for_each(ColumnBuilder::clear);
+        read_rows(first, &mut columns)?;
+    }
+    let columns = first.names.iter().zip(columns).map(|(name, column)| column.into_column(name));
+    Ok(columns.collect())
 }
 
 struct ColumnBuilder {
@@ -176,7 +192,8 @@ struct Line<'a> {
 }
 
 impl<'a> First<'a> {
-    fn of(text: &'a [u8], given: &[String]) -> Result<Self, LoadError> {
+    /// Finds the names, which a header has, or `given`. `advice` says what to do without them, by the number of columns.
+    fn of(text: &'a [u8], given: &[String], advice: impl Fn(usize) -> String) -> Result<Self, LoadError> {
         let (comment, first, after) =
             first_line(text).ok_or_else(|| LoadError::new("there are no rows; a table has one on each line"))?;
         let separator = separator_of(first.text);
@@ -200,14 +217,8 @@ impl<'a> First<'a> {
                 let mut names = separators.iter().map(|separator| values_of(comment, *separator));
                 names.find(|names| names.len() == values.len() && !names.iter().any(|name| is_value(name)))
             });
-            let columns = values.len();
-            let example = if columns == 3 { "x,y,z" } else { "x,y,z,radius" };
-            let names = names.ok_or_else(|| {
-                let message = format!(
-                    "the table has no header; name its {columns} columns in their order, such as with --columns {example}"
-                );
-                LoadError::line(line, message)
-            })?;
+            let names = names
+                .ok_or_else(|| LoadError::line(line, format!("the table has no header; {}", advice(values.len()))))?;
             (names, rows_with_first, line - 1)
         } else {
             if given.len() != values.len() {
@@ -233,7 +244,7 @@ pub(super) fn starts(bytes: &[u8]) -> bool {
     if !is_text(text) {
         return false;
     }
-    if let Ok(first) = First::of(text, &[]) {
+    if let Ok(first) = First::of(text, &[], |_| String::new()) {
         return table::has_positions(&first.names);
     }
     let lines = Lines::new(text).map(<[u8]>::trim_ascii).filter(|line| !line.is_empty() && !line.starts_with(b"#"));

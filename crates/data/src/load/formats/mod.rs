@@ -4,10 +4,12 @@
 use std::io;
 use std::path::Path;
 
+use crate::load::cone_kind::ConeKind;
 use crate::load::dataset::Dataset;
 use crate::load::error::LoadError;
 use crate::load::format::{Format, Options, ReadMethod};
 use crate::load::source::{Source, without_gz};
+use crate::load::table::Columns;
 
 pub mod csv;
 mod dcd;
@@ -203,6 +205,13 @@ pub static FORMATS: &[Format] = &[
     },
     Format { rows: |_, size, _| raw::rows_of(size), ..RAW },
 ];
+
+/// Reads the columns of a file of cylinders or cones.
+type ReadColumns = fn(&[u8], ConeKind) -> Result<Columns, LoadError>;
+
+/// The formats of files of cylinders and cones, by their names.
+pub(super) const CONE_FORMATS: [(&str, ReadColumns); 3] =
+    [("npy", npy::columns), ("npz", |bytes, _| npz::columns(bytes)), ("csv", csv::columns)];
 
 impl Format {
     /// Returns the format with this name.

@@ -15,7 +15,7 @@ use super::npy::{Array, Spheres};
 use crate::load::dataset::Dataset;
 use crate::load::error::{LoadError, Place, first_names};
 use crate::load::format::Options;
-use crate::load::table::Table;
+use crate::load::table::{Columns, Table, TableColumn};
 use pinhole::internals::text::{one_line, shortened};
 
 /// Names that mark the array of positions among several. The first name in this list that occurs counts.
@@ -51,12 +51,50 @@ pub fn read(bytes: &[u8], radius: Option<f64>) -> Result<Dataset, LoadError> {
         }
     }
     drop(data);
-    let mut unused = Vec::new();
-    for (index, entry) in entries.iter().enumerate() {
-        if main.is_alone && index == main.index {
-            continue;
-        }
-        let data = entry.contents(&archive)?;
+    let is_other = |index: usize| !(main.is_alone && index == main.index);
+    let others = entries.iter().enumerate().filter(|(index, _)| is_other(*index)).map(|(_, entry)| entry);
+    let (found, unused) = columns_of(&archive, others, count, "spheres")?;
+    columns.extend(found);
+    let table = Table { columns };
+    let loaded = match spheres {
+        Some((spheres, have_radii)) => table.dress(spheres, have_radii, &options),
+        None => table.into_loaded(&options),
+    };
+    let mut loaded = loaded.map_err(of_array(&first.name))?;
+    loaded.notes.append(&mut notes);
+    loaded.notes.extend(unused);
+    Ok(loaded)
+}
+
+/// Reads the arrays of an archive of cylinders or cones, which have as many rows as the array `start`. A note lists others.
+///
+/// # Errors
+/// Returns an error if there is no such array, or an array is damaged.
+pub(super) fn columns(bytes: &[u8]) -> Result<Columns, LoadError> {
+    let archive = ZipArchive::from_slice(bytes).map_err(|error| broken(&error))?;
+    let entries = entries(&archive, bytes.len() as u64)?;
+    let of_starts = |entry: &&Entry| ["start", "start_x", "start.x"].contains(&entry.name.to_lowercase().as_str());
+    let Some(first) = entries.iter().find(of_starts) else {
+        return Err(LoadError::new(format!(
+            "the archive has no array `start`, but {}; name the arrays of both ends `start` and `end`",
+            listed(&entries)
+        )));
+    };
+    let count = Array::open(&first.contents(&archive)?).map_err(of_array(&first.name))?.rows();
+    let (columns, unused) = columns_of(&archive, entries.iter(), count, "rows of `start`")?;
+    Ok((columns, unused.into_iter().collect()))
+}
+
+/// Returns the columns of arrays with this many rows, and a note that lists other arrays.
+fn columns_of<'a>(
+    archive: &ZipSliceArchive<&[u8]>,
+    entries: impl Iterator<Item = &'a Entry>,
+    count: usize,
+    of: &str,
+) -> Result<(Vec<TableColumn>, Option<String>), LoadError> {
+    let (mut columns, mut unused) = (Vec::new(), Vec::new());
+    for entry in entries {
+        let data = entry.contents(archive)?;
         let array = Array::open(&data).map_err(of_array(&entry.name))?;
         let name = shortened(&entry.name);
         if array.rows() != count || !array.has_rows() {
@@ -68,21 +106,14 @@ pub fn read(bytes: &[u8], radius: Option<f64>) -> Result<Dataset, LoadError> {
             Err(reason) => unused.push(format!("`{name}` {reason}")),
         }
     }
-    let table = Table { columns };
-    let loaded = match spheres {
-        Some((spheres, have_radii)) => table.dress(spheres, have_radii, &options),
-        None => table.into_loaded(&options),
-    };
-    let mut loaded = loaded.map_err(of_array(&first.name))?;
-    loaded.notes.append(&mut notes);
-    if !unused.is_empty() {
+    let note = (!unused.is_empty()).then(|| {
         let unused = first_names(unused.into_iter());
-        loaded.notes.push(format!(
-            "these arrays are not used, because they do not have a row for each of the {count} spheres, or are not \
+        format!(
+            "these arrays are not used, because they do not have a row for each of the {count} {of}, or are not \
              numbers: {unused}"
-        ));
-    }
-    Ok(loaded)
+        )
+    });
+    Ok((columns, note))
 }
 
 /// Returns the uncompressed size in bytes of the arrays, as the archive declares it.

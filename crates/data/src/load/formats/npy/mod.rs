@@ -7,11 +7,12 @@ pub mod pixels;
 use std::collections::TryReserveError;
 
 use super::raw::{Layout, rows};
+use crate::load::cone_kind::ConeKind;
 use crate::load::dataset::Dataset;
 use crate::load::error::{LoadError, LoadErrorKind};
 use crate::load::format::{Numbers, Options, Rows};
 use crate::load::numbers::component_names;
-use crate::load::table::{Table, TableColumn};
+use crate::load::table::{Columns, Table, TableColumn};
 use dtype::{Dtype, Place};
 use header::{Elements, Header};
 use pinhole::internals::text::shortened;
@@ -47,6 +48,11 @@ pub fn read(bytes: &[u8], radius: Option<f64>) -> Result<Dataset, LoadError> {
             loaded
         }
     })
+}
+
+/// Reads the columns of an array of cylinders or cones: start, end, and perhaps radii.
+pub(super) fn columns(bytes: &[u8], kind: ConeKind) -> Result<Columns, LoadError> {
+    Array::open(bytes)?.columns_of(kind)
 }
 
 /// Returns the bytes of memory that reading takes in addition to the file, because columns are f64.
@@ -154,10 +160,7 @@ impl<'a> Array<'a> {
                 )));
             };
             let (columns, unused) = self.fields("");
-            let note =
-                format!("these fields are not used, because they are neither numbers nor text: {}", unused.join(", "));
-            let notes = if unused.is_empty() { vec![] } else { vec![note] };
-            return Ok(Spheres::Columns { columns, notes });
+            return Ok(Spheres::Columns { columns, notes: note_of_unused(&unused).into_iter().collect() });
         };
         let names = match *self.header.shape {
             [_, columns @ 3..=7] => COLUMNS[columns as usize - 3],
@@ -192,6 +195,30 @@ impl<'a> Array<'a> {
         // Positions and colours share a type here, so that its largest value says nothing about colours.
         columns.iter_mut().for_each(|column| column.full = None);
         Ok(Spheres::Columns { columns, notes: Vec::new() })
+    }
+
+    /// Returns the columns of an array of cylinders or cones, with radii or without.
+    fn columns_of(&self, kind: ConeKind) -> Result<Columns, LoadError> {
+        let names = kind.names();
+        match (&self.dtype, &*self.header.shape) {
+            (None, [_]) => {
+                let (columns, unused) = self.fields("");
+                Ok((columns, note_of_unused(&unused).into_iter().collect()))
+            }
+            (Some(dtype), [_, columns]) if [6, names.len() as u64].contains(columns) => {
+                if !dtype.is_real() {
+                    return Err(no_numbers(&dtype.name));
+                }
+                Ok((self.matrix(dtype, names[..*columns as usize].iter().map(ToString::to_string)), Vec::new()))
+            }
+            _ => Err(LoadError::new(format!(
+                "the array has the shape {}, but it must be (n, {}) for {}; or (n, 6) without radii, with the key `{}`",
+                self.shape(),
+                names.len(),
+                names.join(", "),
+                kind.radii()
+            ))),
+        }
     }
 
     /// Reads rows of three or four numbers in f32 or f64 directly; `None` for other types. Radii are 0 if there is no
@@ -251,6 +278,12 @@ impl<'a> Array<'a> {
         let unused = unused.into_iter().map(|field| field.name.clone());
         (used.into_iter().map(column).collect(), unused.collect())
     }
+}
+
+fn note_of_unused(fields: &[String]) -> Option<String> {
+    let note =
+        || format!("these fields are not used, because they are neither numbers nor text: {}", fields.join(", "));
+    (!fields.is_empty()).then(note)
 }
 
 /// The error of elements that are not real numbers.
