@@ -60,7 +60,7 @@ fn read_scene(text: &str, data: &Dataset) -> Result<(), String> {
         checked(path.motion(DVec3::Y))?;
     }
     if let Some(reference) = file.data() {
-        checked(reference.scene(data.clone(), &file.shapes()))?;
+        checked(reference.scene(data.clone(), file.shapes()))?;
     }
     let Some(scene) = checked(file.scene())? else { return Ok(()) };
     checked(file.stereo_pair(&file.film, &scene))?;
@@ -68,7 +68,8 @@ fn read_scene(text: &str, data: &Dataset) -> Result<(), String> {
     for kind in [IntegratorKind::Primary, IntegratorKind::Studio, IntegratorKind::Path] {
         let Some(settings) = checked(file.settings(kind, &scene, &*camera, None))? else { continue };
         let (camera, data) = (file.camera_parameters(), file.data().cloned());
-        let settled = file.settled(Settled { camera, settings: &settings, sky_image: None, data });
+        let settled =
+            file.settled(Settled { camera, settings: &settings, sky_image: None, data, cone_files: Vec::new() });
         SceneFile::parse(&settled).map_err(|error| format!("{error}, in the settled scene file\n{settled}"))?;
     }
     Ok(())

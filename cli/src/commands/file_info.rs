@@ -166,7 +166,7 @@ fn of_scene(path: &Path, given: &Given) -> Result<Report, Failure> {
         integrator: settings.integrator.name(),
         samples: if settings.integrator.is_primary() { 1 } else { settings.sampling.samples },
         lights: settings.lights.len(),
-        cones: input.file.shapes().cones.len(),
+        cones: input.file.shapes().cone_count(),
         files: input.files.iter().skip(1).map(|file| file.display().to_string()).collect(),
     });
     let bounds = scene.bounds();

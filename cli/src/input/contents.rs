@@ -15,10 +15,10 @@ use crate::terminal::{profile, progress};
 use pinhole::image::color::LinearRgb;
 use pinhole::scene::Scene;
 use pinhole_data::added::ArrowKey;
-use pinhole_data::load::{self, Column, Dataset};
+use pinhole_data::load::{self, Column, ConeSet, Dataset};
 use pinhole_data::select::KeptSpheres;
 use pinhole_figure::color_by::{ColorBy, ColorKey};
-use pinhole_figure::scene_file::{Data, DataError, DataScene, IntegratorKind, SceneFile};
+use pinhole_figure::scene_file::{ConeFile, Data, DataError, DataScene, IntegratorKind, SceneFile};
 use pinhole_figure::settings::flags::Group;
 
 /// What a file holds. The scene may be moved out of it.
@@ -116,8 +116,10 @@ impl Source {
         self.contents_of(file)
     }
 
-    fn contents_of(&self, file: SceneFile) -> Result<Contents, Failure> {
+    fn contents_of(&self, mut file: SceneFile) -> Result<Contents, Failure> {
+        let of_cones = file.read_cones(|of| self.read_cones(of)).map_err(|error| self.failure(error))?;
         let (scene, mut details) = self.scene_of(&file)?;
+        details.notes.extend(of_cones);
         if scene.is_empty() && matches!(self.format, Format::Data(_)) {
             details.notes.push(format!(
                 "{}: the file has no spheres, so the picture shows only the background",
@@ -139,7 +141,8 @@ impl Source {
         let topology = data.as_ref().and_then(|data| self.options(&file, data).topology);
         let scene_file = (self.format == Format::Scene).then(|| self.path.clone());
         let files = [scene_file, data_file, topology, sky_image.clone()];
-        let files = files.into_iter().flatten().collect();
+        let cone_files = file.cone_files().map(|of| self.resolve(&of.file));
+        let files = files.into_iter().flatten().chain(cone_files).collect();
         Ok(self.prepared(file, scene, Details { files, sky_image, ..details }))
     }
 
@@ -162,6 +165,17 @@ impl Source {
         }
     }
 
+    /// Reads a file of cylinders or cones. An error is a message, with the path in front as in notes.
+    fn read_cones(&self, of: &ConeFile) -> Result<ConeSet, String> {
+        let path = self.resolve(&of.file);
+        progress::stage(format!("reading {}", path.display()));
+        let mut set = data::read_cones(&path, of).map_err(|error| format!("{error:#}"))?;
+        for note in &mut set.notes {
+            *note = format!("{}: {note}", path.display());
+        }
+        Ok(set)
+    }
+
     /// Makes the scene of a scene file, and of its data if it has any.
     fn scene_of(&self, file: &SceneFile) -> Result<(Scene, Details), Failure> {
         let file_name = || self.path.display().to_string();
@@ -181,7 +195,7 @@ impl Source {
             let note = kinds.as_ref().map(|by| by.note_of_kinds("--color CSS"));
             loaded.notes.extend(note.map(|note| format!("{}: {note}", self.path.display())));
         }
-        let made = data.scene(loaded, &file.shapes()).map_err(|error| match error {
+        let made = data.scene(loaded, file.shapes()).map_err(|error| match error {
             DataError::Scene(error) if !is_data => Error::new(file.at_shape(&error)).context(file_name()),
             DataError::Select(error) if is_data => Error::new(error).context("--select").context(file_name()),
             error => Error::new(error).context(in_scene()),

@@ -10,8 +10,10 @@ use crate::input::read_file::{check_regular, is_standard_input, open, read as re
 use crate::terminal::failure::Failure;
 use crate::terminal::memory;
 use pinhole::LinearRgb;
-use pinhole_data::load::{Dataset, FORMATS, FileRows, Format, LoadError, LoadErrorKind, Options, Place, Trajectory};
-use pinhole_figure::scene_file::SceneFile;
+use pinhole_data::load::{
+    ConeSet, Dataset, FORMATS, FileRows, Format, LoadError, LoadErrorKind, Options, Place, Trajectory,
+};
+use pinhole_figure::scene_file::{ConeFile, SceneFile};
 
 /// The options for a data file, from flags or from a scene file.
 #[derive(Clone, Debug, Default)]
@@ -151,6 +153,16 @@ fn read_whole(path: &Path, format: &Format, options: &DataOptions) -> Result<Dat
         memory::check_reading(&what, extra)?;
     }
     format.read(bytes, &options.to_read()).with_context(file_name)
+}
+
+/// Reads a file of cylinders or cones. An error has the path in front.
+pub(crate) fn read_cones(path: &Path, of: &ConeFile) -> Result<ConeSet> {
+    let bytes = &read_bytes(path)?;
+    if let Ok(Some(format)) = Format::of_path(path) {
+        let extra = format.extra_bytes(bytes).with_context(|| path.display().to_string())?;
+        memory::check_reading(&format!("{}: reading an array of {extra} bytes needs", path.display()), extra)?;
+    }
+    ConeSet::from_bytes(bytes, path, of.kind, of.radii).with_context(|| path.display().to_string())
 }
 
 /// Turns an error into a failure. What a flag corrects is wrong usage: a trajectory without a topology, or two radii.

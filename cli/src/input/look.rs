@@ -181,7 +181,7 @@ impl Source {
         let report = Report {
             path: self.path.display().to_string(),
             spheres: self.bricks.as_ref().map_or(scene.len() - scene.added(), |bricks| bricks.whole().count as usize),
-            cones: file.shapes().cones.len(),
+            cones: file.shapes().cone_count(),
             selected_from: kept.map(|kept| kept.of),
             bonds,
             has_atoms,
@@ -191,6 +191,7 @@ impl Source {
         };
         let (film, encoding, annotations) = (file.film, file.encoding, file.annotations.clone());
         let data = self.data(&file, kinds);
+        let cone_files = file.cone_files().map(|of| self.resolve(&of.file)).collect();
         let Look { camera, eyes, settings, parameters, .. } = look;
         Ok(Input {
             scene: Arc::new(scene),
@@ -210,6 +211,7 @@ impl Source {
             data,
             file,
             sky_image,
+            cone_files,
             bricks: self.bricks.clone(),
             color: color.unwrap_or_else(default_color),
         })

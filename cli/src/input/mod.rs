@@ -61,6 +61,8 @@ pub(crate) struct Input {
     /// The settings.
     pub(crate) file: Arc<SceneFile>,
     pub(crate) sky_image: Option<PathBuf>,
+    /// The files of cylinders and cones, in the order of their tables.
+    pub(crate) cone_files: Vec<PathBuf>,
 }
 
 impl Input {

@@ -27,6 +27,7 @@ pub(crate) fn text(input: &Input, folder: Option<&Path>) -> Result<String> {
         settings: &input.settings,
         sky_image: input.sky_image.as_deref().map(placed).transpose()?,
         data,
+        cone_files: input.cone_files.iter().map(|path| placed(path)).collect::<Result<_>>()?,
     };
     let place = match folder {
         Some(_) => "of this file".to_owned(),

@@ -6,11 +6,12 @@ use serde::{Deserialize, Serialize};
 use toml::Spanned;
 
 use super::camera_path::CameraPathTable;
+use super::cones::{ConeTable, CylinderTable};
 use super::data::{ArrowsValue, BondsValue, BoxValue, Data, Element, ElementTable, positive};
 use super::lighting::{DirectionalTable, GroundTable, IntegratorKind, LightTable, SkyTable};
 use super::mapping::{ByColumn, ColumnTable};
 use super::materials::{Materials, over};
-use super::shapes::{ConeTable, CylinderTable, SphereTable};
+use super::shapes::SphereTable;
 use super::span::{KeyError, SceneFileError, WithSpan, unknown};
 use crate::annotate::{AnnotationPlan, Annotations, Label, LegendPlan, ScaleBarPlan, TextPlan};
 use crate::color_by::{ColorBy, EmissionBy, Mapping, RadiusBy};

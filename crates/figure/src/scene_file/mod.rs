@@ -4,6 +4,7 @@
 //! The commented files `examples/*.toml` show every table and key.
 
 mod camera_path;
+mod cones;
 mod data;
 mod data_scene;
 mod document;
@@ -15,6 +16,8 @@ mod shapes;
 pub(crate) mod span;
 
 pub use camera_path::parse_camera_path;
+pub use cones::{ConeFile, OwnCones};
+pub(crate) use cones::{ConeTable, CylinderTable};
 pub(crate) use data::{ArrowsTable, BondsTable, BoxTable};
 pub use data::{Data, Element};
 pub use data_scene::{DataError, DataScene};
@@ -22,14 +25,15 @@ pub(crate) use document::Document;
 pub use document::KEYS_OF_DATA;
 pub use lighting::IntegratorKind;
 pub use settled::Settled;
-pub(crate) use shapes::{ConeTable, CylinderTable, SphereTable};
-pub use shapes::{OwnCone, OwnShapes};
+pub use shapes::OwnShapes;
+pub(crate) use shapes::SphereTable;
 pub use span::{DEFAULT_COLOR, SceneFileError};
 
 use crate::annotate::AnnotationPlan;
 use crate::settings::flags::{FLAGS, Group};
 use crate::settings::layers::{Joined, Sources};
 use crate::style::{Style, fit};
+use cones::ConesTable;
 use lighting::{IntegratorChoice, SceneLighting};
 use pinhole::camera::film::Film;
 use pinhole::camera::{Camera, CameraError, CameraParameters, CameraPath, View};
@@ -42,6 +46,7 @@ use pinhole::render::{Integrator, RenderSettings, Sampling, SettingsError};
 use pinhole::scene::material::Material;
 use pinhole::scene::sphere::Sphere;
 use pinhole::scene::{Scene, SceneError};
+use pinhole_data::load::ConeSet;
 use span::{Span, WithSpan, scaled};
 
 /// The contents of a scene file.
@@ -62,8 +67,11 @@ pub struct SceneFile {
     data: Option<WithSpan<Data>>,
     camera: WithSpan<CameraParameters>,
     camera_path: Option<CameraPath>,
-    spheres: Vec<WithSpan<Sphere>>,
-    cones: Vec<WithSpan<OwnCone>>,
+    shapes: OwnShapes,
+    /// The positions of the spheres.
+    spheres: Vec<Span>,
+    /// The tables of the cylinders and cones.
+    cones: Vec<ConesTable>,
     asked: IntegratorChoice,
     /// The positions of the ground and of the image of the sky.
     spans: [Span; 2],
@@ -92,12 +100,15 @@ impl SceneFile {
         materials::check(&document.materials, places)?;
         let data = document.data(&layers)?;
         let spheres = shapes::spheres(&document.spheres, &document.materials, places)?;
-        let cones = shapes::cones((&document.cylinders, &document.cones), &document.materials, places)?;
+        let (spheres, own_spheres): (Vec<_>, _) = spheres.into_iter().map(|of| (of.span, of.value)).unzip();
+        let cones = cones::cones((&document.cylinders, &document.cones), &document.materials, places)?;
+        let (cones, own_cones) = cones.into_iter().unzip();
+        let shapes = OwnShapes { spheres: own_spheres, cones: own_cones };
         let has_materials = document.material.is_some()
             || document.opacity.is_some()
             || document.opacity_by.is_some()
             || document.emission_by.is_some()
-            || has_surface(&spheres, &cones, data.as_ref());
+            || has_surface(&shapes, data.as_ref());
         let path = document.camera_path.as_ref();
         let path = path.map(|Table(path)| path.path("camera_path.", places));
         Ok(Self {
@@ -111,6 +122,7 @@ impl SceneFile {
             data,
             camera: WithSpan { value: document.camera, span: places.span("camera") },
             camera_path: path.transpose()?,
+            shapes,
             spheres,
             cones,
             spans: ["ground", "sky.image"].map(|key| places.span(key)),
@@ -120,11 +132,38 @@ impl SceneFile {
         })
     }
 
+    /// Returns the files of cylinders and cones, in the order of their tables.
+    pub fn cone_files(&self) -> impl Iterator<Item = &ConeFile> {
+        self.cones.iter().filter_map(|table| table.file.as_ref())
+    }
+
+    /// Reads the files of cylinders and cones with a function, whose error is the message. Returns their notes.
+    ///
+    /// # Errors
+    /// Returns the first error, with the position of the path in the scene file.
+    pub fn read_cones(
+        &mut self,
+        mut read: impl FnMut(&ConeFile) -> Result<ConeSet, String>,
+    ) -> Result<Vec<String>, SceneFileError> {
+        let mut notes = Vec::new();
+        for (table, own) in self.cones.iter_mut().zip(&mut self.shapes.cones) {
+            let Some(file) = &table.file else { continue };
+            let mut set = read(file).map_err(|error| table.span.error(error))?;
+            notes.append(&mut set.notes);
+            table.fill(own, set)?;
+        }
+        Ok(notes)
+    }
+
     /// Makes the scene of the file's own shapes. [`Data::scene`] makes that of its data.
     ///
     /// # Errors
-    /// Names the first shape that is out of range, with its position.
+    /// Names the first shape that is out of range, with its position; or a file that [`SceneFile::read_cones`] has not
+    /// read.
     pub fn scene(&self) -> Result<Scene, SceneFileError> {
+        if let Some(table) = self.cones.iter().find(|table| table.is_open) {
+            return Err(table.span.error("this file has not been read; call `read_cones` before"));
+        }
         self.shapes().scene().map_err(|error| self.at_shape(&error))
     }
 
@@ -132,22 +171,33 @@ impl SceneFile {
     /// kind, then those of its data.
     #[must_use]
     pub fn at_shape(&self, error: &SceneError) -> SceneFileError {
-        let (index, own, what, fault) = match error {
+        let own = &self.shapes.cones;
+        let (mut index, what, fault) = match error {
             SceneError::Sphere { index, error } => {
-                (*index, self.spheres.iter().map(|sphere| sphere.span).collect::<Vec<_>>(), "sphere", error.to_string())
+                if let Some(span) = self.spheres.get(*index) {
+                    return span.error(error);
+                }
+                (*index - self.spheres.len(), "sphere", error.to_string())
             }
-            SceneError::Cone { index, error } => {
-                (*index, self.cones.iter().map(|cone| cone.span).collect(), "bond or edge", error.to_string())
-            }
+            SceneError::Cone { index, error } => (*index, "bond or edge", error.to_string()),
             _ => return Span::START.error(error),
         };
-        match (own.get(index), &self.data) {
-            (Some(span), _) => span.error(error),
-            (None, Some(data)) => {
-                let in_data = index - own.len();
-                data.span.error(format!("{what} {in_data} of {}: {fault}", data.value.file))
+        let is_sphere = what == "sphere";
+        for (table, own) in self.cones.iter().zip(own) {
+            let count = if is_sphere { own.ends.len() } else { own.cones.len() };
+            if index < count {
+                return match &table.file {
+                    // Without round ends, shapes have the order of the file.
+                    Some(of) if own.ends.is_empty() => table.span.error(format!("{}: row {index}: {fault}", of.file)),
+                    Some(of) => table.span.error(format!("{}: {fault}", of.file)),
+                    None => table.span.error(format!("{}: {fault}", table.name)),
+                };
             }
-            (None, None) => Span::START.error(error),
+            index -= count;
+        }
+        match &self.data {
+            Some(data) => data.span.error(format!("{what} {index} of {}: {fault}", data.value.file)),
+            None => Span::START.error(error),
         }
     }
 
@@ -192,13 +242,13 @@ impl SceneFile {
 
     /// Returns the spheres that are in the file itself.
     pub fn spheres(&self) -> impl Iterator<Item = Sphere> {
-        self.spheres.iter().map(|sphere| sphere.value)
+        self.shapes.spheres.iter().copied()
     }
 
-    /// Returns the shapes that are in the file itself.
+    /// Returns the shapes that are in the file itself, or in files of cylinders and cones that were read.
     #[must_use]
-    pub fn shapes(&self) -> OwnShapes {
-        OwnShapes { spheres: self.spheres().collect(), cones: self.cones.iter().map(|cone| cone.value).collect() }
+    pub fn shapes(&self) -> &OwnShapes {
+        &self.shapes
     }
 
     /// Returns the reference to a data file, if the scene file has one.
@@ -226,14 +276,14 @@ impl SceneFile {
 }
 
 /// Whether the surface of any shape is not matt and opaque.
-fn has_surface(spheres: &[WithSpan<Sphere>], cones: &[WithSpan<OwnCone>], data: Option<&WithSpan<Data>>) -> bool {
+fn has_surface(shapes: &OwnShapes, data: Option<&WithSpan<Data>>) -> bool {
     let matt = pinhole::scene::material::SurfaceProperties::default();
     let of_data = data.iter().flat_map(|data| {
         let elements = data.value.elements.iter().map(|element| element.surface);
         elements.chain([data.value.surface])
     });
-    let own = spheres.iter().map(|sphere| sphere.value.surface);
-    own.chain(cones.iter().map(|cone| cone.value.surface)).chain(of_data).any(|surface| surface != matt)
+    let own = shapes.spheres.iter().map(|sphere| sphere.surface);
+    own.chain(shapes.cones.iter().map(|own| own.surface)).chain(of_data).any(|surface| surface != matt)
 }
 
 impl SceneFile {
@@ -334,10 +384,12 @@ impl SceneFile {
 
     /// Refuses shapes of this file that would reflect more light than they receive, or emit too much.
     fn check_colors(&self) -> Result<(), SceneFileError> {
-        let spheres = self.spheres.iter().map(|s| ("sphere", s.span, s.value.color, s.value.surface));
-        let cones = self.cones.iter().map(|c| ("cone", c.span, c.value.color, c.value.surface));
-        for (index, (kind, span, color, surface)) in spheres.enumerate().chain(cones.enumerate()) {
-            let (rgb, what) = (color.to_array(), format!("{kind} {index}"));
+        let spheres = self.spheres.iter().zip(&self.shapes.spheres).enumerate();
+        let spheres = spheres.map(|(index, (span, s))| (format!("sphere {index}"), *span, s.color, s.surface));
+        // Files have no colours that create light.
+        let cones = self.cones.iter().map(|table| (table.name.clone(), table.span, table.color, table.surface));
+        for (what, span, color, surface) in spheres.chain(cones) {
+            let rgb = color.to_array();
             match surface.material {
                 Material::Emissive { strength } => {
                     scaled(color, strength.into(), &what).map_err(|error| span.error(error))?;

@@ -20,13 +20,15 @@ pub struct Settled<'a> {
     pub sky_image: Option<String>,
     /// The data and its keys; paths are relative to the file that is written.
     pub data: Option<Data>,
+    /// The paths of [`SceneFile::cone_files`], relative to the file that is written; those of this file if it is empty.
+    pub cone_files: Vec<String>,
 }
 
 impl SceneFile {
     /// Returns the text of a scene file that makes the same picture, whatever the defaults and styles are when it is read.
     #[must_use]
     pub fn settled(&self, settled: Settled<'_>) -> String {
-        let Settled { camera, settings, sky_image, data } = settled;
+        let Settled { camera, settings, sky_image, data, cone_files } = settled;
         let RenderSettings { integrator, sampling, lights, sky, ground, background, .. } = settings;
         let is_lit = !integrator.is_primary();
         let lights = || lights.iter().map(|light| Table(LightTable::of(light))).collect();
@@ -57,6 +59,9 @@ impl SceneFile {
             document.topology = data.topology;
             document.color_by = data.mapping.color.map(ByColumn);
         }
+        let cylinders = document.cylinders.iter_mut().map(|table| &mut table.as_mut().0.file);
+        let cones = document.cones.iter_mut().map(|table| &mut table.as_mut().0.file);
+        cylinders.chain(cones).flatten().zip(cone_files).for_each(|(file, written)| *file = written);
         // All values are numbers, texts, lists and tables, which can always be written.
         toml::to_string(&document).unwrap_or_default()
     }

@@ -36,7 +36,7 @@ fn cylinders_come_behind_spheres_and_cones_behind_cylinders() {
     let gold = SurfaceProperties { material: Material::Conductor { roughness: 0.3 }, opacity: 0.5 };
     assert_eq!([0, 1, 2, 3].map(|id| scene.surface(id) == gold), [false, true, false, false]);
     let (camera, settings) = (file.camera_parameters(), &RenderSettings::studio());
-    let text = file.settled(Settled { camera, settings, sky_image: None, data: None });
+    let text = file.settled(Settled { camera, settings, sky_image: None, data: None, cone_files: Vec::new() });
     assert_eq!(parse(&text).shapes(), file.shapes(), "{text}");
 }
 
@@ -46,7 +46,7 @@ fn cones_of_the_file_come_before_sticks_of_its_data() {
     let file = parse(&format!("{data}{SHAPES}"));
     let of = |radii: [f64; 2]| {
         let spheres = vec![[5.0, 0.0, 0.0, radii[0]], [5.0, 0.0, 2.0, radii[1]]];
-        file.data().unwrap().scene(Dataset::new(SphereArray::F64(spheres)), &file.shapes())
+        file.data().unwrap().scene(Dataset::new(SphereArray::F64(spheres)), file.shapes())
     };
     let made = of([0.2, 0.2]).unwrap();
     assert_eq!((made.bonds, made.scene.len(), made.scene.cones().len()), (Some(1), 3, 4));
@@ -62,7 +62,7 @@ fn a_cone_that_vanishes_in_the_frame_has_a_place() {
                [[cylinders]]\nstart = [1e9, 0, 0]\nend = [1000000001, 0, 0]\nradius = 0.5\n";
     let error = parse(far).scene().unwrap_err();
     assert_eq!(error.line, 7);
-    assert!(error.message.starts_with("cone 0: after rounding to f32"), "{error}");
+    assert!(error.message.starts_with("cylinder 0: after rounding to f32"), "{error}");
     let own = SceneError::Invalid(String::new());
     assert_eq!(parse(far).at_shape(&own).line, 1);
 }

@@ -91,7 +91,7 @@ fn data_comes_behind_the_files_own_spheres() {
     let own = file.shapes();
     let scene = |radii: &[f64]| {
         let spheres = radii.iter().map(|radius| [5.0, 0.0, 0.0, *radius]).collect();
-        data.scene(Dataset::new(SphereArray::F64(spheres)), &own).map(|made| made.scene)
+        data.scene(Dataset::new(SphereArray::F64(spheres)), own).map(|made| made.scene)
     };
     let made = scene(&[4.0]).unwrap();
     assert_eq!(made.spheres(), [[0.0, 0.0, 0.0, 1.0], [5.0, 0.0, 0.0, 2.0]]);
@@ -176,6 +176,7 @@ fn round_trip(settings: &RenderSettings, scene: &Scene) -> (RenderSettings, Stri
         settings,
         sky_image: image.as_ref().map(|_| "a \"sky\".hdr".to_owned()),
         data: None,
+        cone_files: Vec::new(),
     };
     let text = parse("").settled(settled);
     let file = parse(&text);
@@ -258,7 +259,7 @@ fn round_trip_file(text: &str) -> SceneFile {
     let spheres: Vec<Sphere> = file.spheres().collect();
     let settings = &RenderSettings::studio();
     let (camera, data) = (file.camera_parameters(), file.data().cloned());
-    let text = file.settled(Settled { camera, settings, sky_image: None, data });
+    let text = file.settled(Settled { camera, settings, sky_image: None, data, cone_files: Vec::new() });
     let again = parse(&text);
     assert_eq!(again.film, file.film);
     assert_eq!(again.encoding, file.encoding);

@@ -210,7 +210,7 @@ fn arrays_get_the_common_surface_properties() {
         let file = parse(&format!("data = 'a.npy'\nopacity = 0.5\n{own}"));
         let loaded = Dataset::new(SphereArray::F32(vec![[0.0, 0.0, 0.0, 1.0]; 2]));
         let own = file.shapes();
-        let scene = file.data().unwrap().scene(loaded, &own).unwrap().scene;
+        let scene = file.data().unwrap().scene(loaded, own).unwrap().scene;
         let last = scene.len() as u32 - 1;
         assert_eq!(scene.surface(last).opacity, 0.5);
         assert_eq!(scene.surface(0).opacity, if own.spheres.is_empty() { 0.5 } else { 1.0 });

@@ -157,7 +157,7 @@ fn defaults() -> Vec<toml::Table> {
         let kind = if integrator == "path" { IntegratorKind::Path } else { IntegratorKind::Studio };
         let settings = file.settings(kind, &scene, &camera, None).unwrap();
         let camera = file.camera_parameters();
-        file.settled(Settled { camera, settings: &settings, sky_image: None, data: None })
+        file.settled(Settled { camera, settings: &settings, sky_image: None, data: None, cone_files: Vec::new() })
     });
     texts.iter().map(|text| text.parse().unwrap()).collect()
 }

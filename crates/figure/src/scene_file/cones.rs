@@ -1,0 +1,273 @@
+//! The lists `cylinders` and `cones`, whose tables hold one shape or name a file of them.
+
+use serde::{Deserialize, Serialize};
+use toml::Spanned;
+
+use super::materials::{Materials, over};
+use super::shapes::Tables;
+use super::span::{SceneFileError, Span, default_color};
+use crate::settings::places::Places;
+use pinhole::image::color::LinearRgb;
+use pinhole::internals::exact::{List, Table};
+use pinhole::scene::cone::{Caps, Cone};
+use pinhole::scene::material::{Material, SurfaceProperties};
+use pinhole::scene::sphere;
+use pinhole_data::load::{ConeKind, ConeSet};
+
+/// The cylinders or cones of one table of a scene file, and their look.
+#[derive(Clone, Debug, PartialEq)]
+pub struct OwnCones {
+    /// The shapes.
+    pub cones: Vec<Cone>,
+    /// The spheres (x, y, z, radius) at round ends.
+    pub ends: Vec<[f64; 4]>,
+    /// One colour for all; or one for each shape, and then for each sphere.
+    pub colors: Vec<LinearRgb>,
+    /// The surface properties.
+    pub surface: SurfaceProperties,
+}
+
+/// A file of cylinders or cones that a table of a scene file names.
+#[derive(Clone, Debug, PartialEq)]
+pub struct ConeFile {
+    /// The path, relative to the scene file.
+    pub file: String,
+    /// What the file has.
+    pub kind: ConeKind,
+    /// The radii of both ends of all shapes, for a file without radii.
+    pub radii: Option<[f64; 2]>,
+}
+
+impl OwnCones {
+    /// The looks of the cones.
+    pub(super) fn looks(&self) -> impl Iterator<Item = (LinearRgb, SurfaceProperties)> {
+        (0..self.cones.len()).map(|index| self.look(index))
+    }
+
+    /// The looks of the spheres at round ends.
+    pub(super) fn looks_of_ends(&self) -> impl Iterator<Item = (LinearRgb, SurfaceProperties)> {
+        (0..self.ends.len()).map(|index| self.look(self.cones.len() + index))
+    }
+
+    fn look(&self, index: usize) -> (LinearRgb, SurfaceProperties) {
+        let color = match &self.colors[..] {
+            [color] => *color,
+            colors => colors.get(index).copied().unwrap_or(LinearRgb::WHITE),
+        };
+        (color, self.surface)
+    }
+}
+
+/// A table of the lists `cylinders` and `cones`.
+#[derive(Clone, Debug)]
+pub(super) struct ConesTable {
+    /// The place of the table, or of its key `file`.
+    pub(super) span: Span,
+    /// The table in words, such as `cylinder 3`.
+    pub(super) name: String,
+    /// The file of the shapes.
+    pub(super) file: Option<ConeFile>,
+    /// Whether the file has not been read.
+    pub(super) is_open: bool,
+    pub(super) color: LinearRgb,
+    pub(super) surface: SurfaceProperties,
+    caps: Caps,
+    is_round: bool,
+}
+
+/// A table of the list `cylinders`.
+#[derive(Clone, Debug, Deserialize, Serialize)]
+#[serde(deny_unknown_fields)]
+pub(crate) struct CylinderTable {
+    /// Path of a file of cylinders, relative to the scene file, in the place of `start` and `end`.
+    pub(super) file: Option<String>,
+    /// The middle of the first end in scene units.
+    start: Option<List<3>>,
+    /// The middle of the second end.
+    end: Option<List<3>>,
+    /// The radius in scene units, greater than 0.
+    radius: Option<f64>,
+    /// The closed ends: `none`, `first`, `second` or `both`, which is the default.
+    caps: Option<Caps>,
+    /// Whether the ends are round: a sphere at each.
+    #[serde(default)]
+    round: bool,
+    /// The colour; a light grey by default. Colours of a file take precedence.
+    #[serde(default = "default_color")]
+    color: LinearRgb,
+    /// The name of a material, which must not be emissive.
+    material: Option<String>,
+    /// Opacity, from 0 (clear) to 1 (opaque).
+    opacity: Option<f64>,
+}
+
+/// A table of the list `cones`.
+#[derive(Clone, Debug, Deserialize, Serialize)]
+#[serde(deny_unknown_fields)]
+pub(crate) struct ConeTable {
+    /// Path of a file of cones, relative to the scene file, in the place of `start` and `end`.
+    pub(super) file: Option<String>,
+    /// The middle of the first end in scene units.
+    start: Option<List<3>>,
+    /// The middle of the second end.
+    end: Option<List<3>>,
+    /// The radii of both ends in scene units. One of them may be 0, which makes a tip.
+    radii: Option<Pair>,
+    /// The closed ends: `none`, `first`, `second` or `both`, which is the default.
+    caps: Option<Caps>,
+    /// Whether the ends are round: a sphere at each, which the side touches.
+    #[serde(default)]
+    round: bool,
+    /// The colour; a light grey by default. Colours of a file take precedence.
+    #[serde(default = "default_color")]
+    color: LinearRgb,
+    /// The name of a material, which must not be emissive.
+    material: Option<String>,
+    /// Opacity, from 0 (clear) to 1 (opaque).
+    opacity: Option<f64>,
+}
+
+type Pair = List<2>;
+
+/// The keys of a table of either list.
+struct Keys<'a> {
+    file: Option<&'a String>,
+    ends: [(&'static str, Option<[f64; 3]>); 2],
+    radii: Option<[f64; 2]>,
+    caps: Option<Caps>,
+    is_round: bool,
+    color: LinearRgb,
+    material: Option<&'a str>,
+    opacity: Option<f64>,
+}
+
+/// Reads the list `cylinders`, and then the list `cones`. Files are not read.
+pub(super) fn cones(
+    (cylinders, cones): (&Tables<CylinderTable>, &Tables<ConeTable>),
+    materials: &Materials,
+    places: &Places<'_>,
+) -> Result<Vec<(ConesTable, OwnCones)>, SceneFileError> {
+    let place = |place: &Option<List<3>>| place.map(|place| place.0);
+    let cylinder = |(index, spanned): (usize, &Spanned<Table<CylinderTable>>)| {
+        let Table(table) = spanned.get_ref();
+        let keys = Keys {
+            file: table.file.as_ref(),
+            ends: [("start", place(&table.start)), ("end", place(&table.end))],
+            radii: table.radius.map(|radius| [radius; 2]),
+            caps: table.caps,
+            is_round: table.round,
+            color: table.color,
+            material: table.material.as_deref(),
+            opacity: table.opacity,
+        };
+        read(&keys, ConeKind::Cylinder, (index, spanned.span().start), materials, places)
+    };
+    let cone = |(index, spanned): (usize, &Spanned<Table<ConeTable>>)| {
+        let Table(table) = spanned.get_ref();
+        let keys = Keys {
+            file: table.file.as_ref(),
+            ends: [("start", place(&table.start)), ("end", place(&table.end))],
+            radii: table.radii.map(|radii| radii.0),
+            caps: table.caps,
+            is_round: table.round,
+            color: table.color,
+            material: table.material.as_deref(),
+            opacity: table.opacity,
+        };
+        read(&keys, ConeKind::Cone, (index, spanned.span().start), materials, places)
+    };
+    cylinders.iter().enumerate().map(cylinder).chain(cones.iter().enumerate().map(cone)).collect()
+}
+
+/// Reads a table, which begins at a byte.
+fn read(
+    keys: &Keys<'_>,
+    kind: ConeKind,
+    (index, byte): (usize, usize),
+    materials: &Materials,
+    places: &Places<'_>,
+) -> Result<(ConesTable, OwnCones), SceneFileError> {
+    let (list, name) = match kind {
+        ConeKind::Cylinder => (format!("cylinders.{index}"), format!("cylinder {index}")),
+        ConeKind::Cone => (format!("cones.{index}"), format!("cone {index}")),
+    };
+    let refused = |error: String| places.refused(&list, error);
+    let at_table = places.lines.span(byte);
+    let surface = over(materials, SurfaceProperties::default(), keys.material, keys.opacity)
+        .map_err(|error| places.refused(&list, error))?;
+    if matches!(surface.material, Material::Emissive { .. }) {
+        return Err(at_table.error(format!(
+            "{name}: it has an emissive material, but only spheres emit light; name another material"
+        )));
+    }
+    if keys.is_round && keys.caps.is_some() {
+        return Err(refused("`caps` and `round` exclude each other; remove one of them".to_owned()));
+    }
+    let (file, span) = match keys.file {
+        Some(file) => {
+            if let Some((end, _)) = keys.ends.iter().find(|(_, place)| place.is_some()) {
+                return Err(refused(format!("`{end}` and `file` exclude each other; remove one of them")));
+            }
+            let file = ConeFile { file: file.clone(), kind, radii: keys.radii };
+            (Some(file), places.span(&format!("{list}.file")))
+        }
+        None => (None, at_table),
+    };
+    let (caps, is_round) = (keys.caps.unwrap_or_default(), keys.is_round);
+    let is_open = file.is_some();
+    let table = ConesTable { span, name, file, is_open, color: keys.color, surface, caps, is_round };
+    let mut own = OwnCones { cones: Vec::new(), ends: Vec::new(), colors: vec![keys.color], surface };
+    if !table.is_open {
+        let missing = |key: &str| at_table.error(format!("missing key `{key}`; add it"));
+        let [start, end] = keys.ends.map(|(key, place)| place.ok_or_else(|| missing(key)));
+        let radii = keys.radii.ok_or_else(|| missing(kind.radii()));
+        let cone = Cone::new(start?, end?, radii?);
+        let name = &table.name;
+        cone.check().map_err(|error| span.error(format!("{name}: {error}")))?;
+        table.add(&mut own, vec![cone], None).map_err(|(_, error)| span.error(format!("{name}: {error}")))?;
+    }
+    Ok((table, own))
+}
+
+impl ConesTable {
+    /// Adds the shapes of a file that was read.
+    pub(super) fn fill(&mut self, own: &mut OwnCones, set: ConeSet) -> Result<(), SceneFileError> {
+        let file = self.file.as_ref().map_or("", |of| of.file.as_str());
+        let refused = |(row, error)| self.span.error(format!("{file}: row {row}: {error}"));
+        self.add(own, set.cones, set.colors).map_err(refused)?;
+        self.is_open = false;
+        Ok(())
+    }
+
+    /// Adds shapes that were checked, with the ends that the table asks for. An error comes with the index of a shape.
+    fn add(
+        &self,
+        own: &mut OwnCones,
+        mut cones: Vec<Cone>,
+        colors: Option<Vec<LinearRgb>>,
+    ) -> Result<(), (usize, String)> {
+        if !self.is_round {
+            cones.iter_mut().for_each(|cone| cone.caps = self.caps);
+            own.cones = cones;
+            own.colors = colors.unwrap_or_else(|| vec![self.color]);
+            return Ok(());
+        }
+        let color = |index: usize| colors.as_ref().and_then(|all| all.get(index)).copied();
+        let (mut of_sides, mut of_ends) = (Vec::new(), Vec::new());
+        for (index, cone) in cones.iter().enumerate() {
+            let sphere = |[x, y, z]: [f64; 3], radius| [x, y, z, radius];
+            let [first, second] = [(cone.start, cone.radii[0]), (cone.end, cone.radii[1])].map(|(at, r)| sphere(at, r));
+            let (side, ends) = Cone::rounded(first, second);
+            of_sides.extend(side.and(color(index)));
+            own.cones.extend(side);
+            for end in ends.into_iter().flatten() {
+                sphere::check(end).map_err(|error| (index, error.to_string()))?;
+                of_ends.extend(color(index));
+                own.ends.push(end);
+            }
+        }
+        of_sides.append(&mut of_ends);
+        own.colors = if colors.is_some() { of_sides } else { vec![self.color] };
+        Ok(())
+    }
+}
