@@ -1,4 +1,4 @@
-"""Ray traces spheres: arrays in, pictures and layers out, on any device and without a display.
+"""Ray traces spheres, cylinders and cones: arrays in, pictures and layers out, on any device and without a display.
 
 >>> import numpy as np, pinhole as ph
 >>> spheres = ph.Spheres(np.random.default_rng(1).normal(size=(100, 3)), radius=0.1, color="steelblue")
@@ -11,11 +11,13 @@ import atexit
 
 from ._camera import Camera
 from ._certificate import Certificate
+from ._cones import Cones, Cylinders
 from ._errors import DeviceError, Error, FileError, InputError, InternalError, Note, PackageError
 from ._files import Trajectory, read
 from ._image import Image
 from ._movie import movie
 from ._pinhole import __version__, adapters, use_adapter, wait_for_threads
+from ._shapes import Shapes
 from ._sheet import sheet
 from ._spheres import Spheres
 from ._tables import (
@@ -51,6 +53,8 @@ __all__ = [
     "Camera",
     "Certificate",
     "ColorBy",
+    "Cones",
+    "Cylinders",
     "DepthCue",
     "DeviceError",
     "EmissionBy",
@@ -74,6 +78,7 @@ __all__ = [
     "RadiusBy",
     "Sampling",
     "ScaleBar",
+    "Shapes",
     "Sky",
     "Spheres",
     "Studio",

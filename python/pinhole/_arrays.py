@@ -92,14 +92,14 @@ def radii(given: Any, like: Array) -> float | Array | None:
     return floats(array, like.dtype)
 
 
-def per_sphere(name: str, array: Array, count: int) -> Array:
+def per_sphere(name: str, array: Array, count: int, what: str = "spheres") -> Array:
     """Checks that an array has the shape (n,)."""
     if array.ndim == 2 and array.shape == (count, 1):
         return array[:, 0]
     if array.ndim != 1:
         raise InputError(f"{name} has the shape {array.shape}; it must be (n,), here ({count},)")
     if len(array) != count:
-        raise InputError(f"{name} has {len(array)} values for {count} spheres")
+        raise InputError(f"{name} has {len(array)} values for {count} {what}")
     return array
 
 
@@ -108,11 +108,11 @@ def is_colors(given: Any) -> bool:
     return np.ndim(given) == 2
 
 
-def colors(given: Any, count: int) -> Array:
+def colors(given: Any, count: int, what: str = "spheres") -> Array:
     """Colours: uint8 of shape (n, 3) or (n, 4) in sRGB, or float32 of shape (n, 3) in linear light."""
     array = numbers("color", given)
     if len(array) != count:
-        raise InputError(f"color has {len(array)} rows for {count} spheres")
+        raise InputError(f"color has {len(array)} rows for {count} {what}")
     if array.dtype == np.uint8 and array.shape[1] in (3, 4):
         return array
     if array.dtype.kind == "f" and array.shape[1] == 3:
@@ -169,3 +169,16 @@ def column(name: str, given: Any, count: int) -> tuple[list[str], Array] | Array
         names, indices = np.unique(texts, return_inverse=True)
         return (names.tolist(), indices.astype(np.uint32).reshape(-1))
     return floats(per_sphere(name, numbers(name, given), count), np.float64)
+
+
+def triple(color: Any) -> Any:
+    """Returns a colour as a scene file writes it."""
+    if isinstance(color, str):
+        return color
+    array = numbers("color", color)
+    if array.dtype.kind in "iu" and array.max() > 1:
+        bytes_of = "#" + "".join(f"{int(number) & 255:02x}" for number in array)
+        raise InputError(
+            f'color is {array.tolist()}; a triple is linear light from 0 to 1; for bytes in sRGB write "{bytes_of}"'
+        )
+    return [float(number) for number in array]

@@ -12,7 +12,8 @@ from ._errors import InputError
 from ._image import Image
 from ._movie import movie
 from ._pinhole import FileData, JoinedFrames
-from ._spheres import Spheres, warn
+from ._shapes import warn
+from ._spheres import Spheres
 
 
 class Trajectory(Sequence[Spheres]):

@@ -20,7 +20,7 @@ from ._errors import Error
 from ._image import Image
 
 if TYPE_CHECKING:
-    from ._spheres import Spheres
+    from ._shapes import Shapes
 
 #: Seconds without a movement after which the picture is refined.
 STILL_AFTER = 0.25
@@ -61,13 +61,13 @@ class Stage(NamedTuple):
 
 
 class Refiner:
-    """Renders spheres with the settings of ``Spheres.render``. The thread calls ``show`` with every picture, and
+    """Renders spheres with the settings of ``render``. The thread calls ``show`` with every picture, and
     ``fail`` with an error.
     """
 
     def __init__(
         self,
-        spheres: Spheres,
+        spheres: Shapes,
         camera: Camera,
         size: tuple[int, int],
         settings: Mapping[str, Any],
@@ -205,7 +205,7 @@ class Refiner:
             return
         found = int(ids[int(y * height), int(x * width)])
         # Added shapes, such as bonds, have larger indices than the data's spheres.
-        tell(found if found < len(self.spheres) else None)
+        tell(found if found < len(self.spheres._data) else None)
 
     def _move(self, serial: int, camera: Camera) -> bool:
         """Shows a quick picture, and returns whether the camera does not move afterwards."""

@@ -18,9 +18,10 @@ from ._errors import Error, InputError
 from ._image import Image
 from ._orbit import Orbit
 from ._refine import Refiner, Stage, checked_size, screen_size
+from ._spheres import Spheres
 
 if TYPE_CHECKING:
-    from ._spheres import Spheres
+    from ._shapes import Shapes
 
 #: Labels show columns up to this number of spheres, because that copies the columns.
 LABELLED = 2_000_000
@@ -30,7 +31,7 @@ COLUMNS = 6
 
 
 class View(anywidget.AnyWidget):
-    """A picture in a notebook that is turned by dragging and zoomed by the wheel; ``Spheres.view`` makes it.
+    """A picture in a notebook that is turned by dragging and zoomed by the wheel; ``view`` makes it.
 
     Pictures are rendered in the kernel, on a thread: quick and small ones while the camera moves, and then one with
     increasing numbers of samples. A click picks a sphere.
@@ -58,7 +59,7 @@ class View(anywidget.AnyWidget):
 
     def __init__(
         self,
-        spheres: Spheres,
+        spheres: Shapes,
         size: tuple[int, int],
         camera: Camera | str | Mapping[str, Any] | None,
         settings: Mapping[str, Any],
@@ -176,7 +177,7 @@ class View(anywidget.AnyWidget):
     def _label_of(self, index: int) -> str:
         """The text about a sphere."""
         spheres, words = self._spheres, [f"sphere {index}"]
-        if 0 <= index < len(spheres) <= LABELLED:
+        if isinstance(spheres, Spheres) and 0 <= index < len(spheres) <= LABELLED:
             columns = ((name, spheres[name]) for name in spheres.columns[:COLUMNS])
             # Columns of a selection have the values of all spheres, so they are left out.
             words += [f"{name} {_short(values[index])}" for name, values in columns if len(values) == len(spheres)]

@@ -8,6 +8,7 @@ use pyo3::prelude::*;
 
 mod arrays;
 mod certificate;
+mod cones;
 mod device;
 mod fault;
 mod files;

@@ -8,6 +8,7 @@ use pyo3::prelude::*;
 
 use crate::arrays::{self, Centers, ColorArray, Radii};
 use crate::certificate::{self, CertificateData};
+use crate::cones;
 use crate::device::Backend;
 use crate::fault::{Fault, Outcome};
 use crate::image::Picture;
@@ -74,19 +75,24 @@ impl SphereData {
                 (scene, color_key, arrow_key, notes, bonds)
             }
         };
-        let scene = Mutex::new(Arc::new(scene));
-        Ok(Self {
-            scene,
-            has_sticks: bonds.is_some_and(|bonds| bonds > 0) || arrow_key.is_some(),
-            key,
-            arrow_key,
-            loaded: kept,
-            has_radii,
-            z_is_up,
-            notes,
+        let has_sticks = bonds.is_some_and(|bonds| bonds > 0) || arrow_key.is_some();
+        Ok(Self { key, arrow_key, loaded: kept, has_radii, has_sticks, z_is_up, notes, ..Self::of_scene(scene) })
+    }
+
+    /// A scene without columns and notes.
+    fn of_scene(scene: Scene) -> Self {
+        Self {
+            scene: Mutex::new(Arc::new(scene)),
+            key: None,
+            arrow_key: None,
+            loaded: None,
+            has_radii: true,
+            has_sticks: false,
+            z_is_up: false,
+            notes: Vec::new(),
             on_device: OnDevice::default(),
             updates: AtomicU64::new(0),
-        })
+        }
     }
 
     fn lock(&self) -> MutexGuard<'_, Arc<Scene>> {
@@ -136,6 +142,42 @@ impl SphereData {
             let given = DataExtras { colors: rgba8.filter(|_| is_simple), radii: has_radius, keys: None };
             Self::of_loaded(loaded, &text, given, false)
         })?)
+    }
+
+    /// Makes cones of arrays that Python has checked.
+    #[staticmethod]
+    #[pyo3(signature = (start, end, radii, color, caps, round, text))]
+    fn of_cones(
+        py: Python<'_>,
+        start: PyReadonlyArray2<'_, f64>,
+        end: PyReadonlyArray2<'_, f64>,
+        radii: PyReadonlyArray2<'_, f64>,
+        color: Option<ColorArray<'_>>,
+        caps: &str,
+        round: bool,
+        text: SceneText,
+    ) -> PyResult<Self> {
+        let caps = cones::caps_of_name(caps)?;
+        let cones = cones::cones(start.as_array(), end.as_array(), radii.as_array(), caps);
+        let colors = color.as_ref().map(ColorArray::linear).transpose()?;
+        Ok(worker::run(py, None, move |_| Ok(Self::of_scene(cones::scene_of_cones(cones, colors, round, &text)?)))?)
+    }
+
+    /// The shapes of both, in a scene of their own.
+    fn joined(&self, py: Python<'_>, other: Bound<'_, Self>) -> PyResult<Self> {
+        let other = other.get();
+        let scenes = [self.scene(), other.scene()];
+        let key = self.key.clone().or_else(|| other.key.clone());
+        let z_is_up = self.z_is_up || other.z_is_up;
+        Ok(worker::run(py, None, move |_| {
+            let scene = cones::joined([&scenes[0], &scenes[1]])?;
+            Ok(Self { key, z_is_up, ..Self::of_scene(scene) })
+        })?)
+    }
+
+    /// The number of cylinders and cones.
+    fn cone_count(&self) -> usize {
+        self.lock().cones().len()
     }
 
     /// Returns the same data with other settings.

@@ -14,6 +14,7 @@ mod binary_files;
 mod cases;
 
 mod binary;
+mod cones;
 mod files;
 mod npy;
 mod xyz;

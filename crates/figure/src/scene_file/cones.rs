@@ -1,17 +1,18 @@
 //! The lists `cylinders` and `cones`, whose tables hold one shape or name a file of them.
 
+use std::fmt;
+
 use serde::{Deserialize, Serialize};
 use toml::Spanned;
 
 use super::materials::{Materials, over};
-use super::shapes::Tables;
 use super::span::{SceneFileError, Span, default_color};
 use crate::settings::places::Places;
 use pinhole::image::color::LinearRgb;
 use pinhole::internals::exact::{List, Table};
 use pinhole::scene::cone::{Caps, Cone};
 use pinhole::scene::material::{Material, SurfaceProperties};
-use pinhole::scene::sphere;
+use pinhole::scene::sphere::{self, SphereError};
 use pinhole_data::load::{ConeKind, ConeSet};
 
 /// The cylinders or cones of one table of a scene file, and their look.
@@ -39,6 +40,39 @@ pub struct ConeFile {
 }
 
 impl OwnCones {
+    /// Shapes that were checked. `colors` is one for all, or one for each.
+    #[must_use]
+    pub const fn new(cones: Vec<Cone>, colors: Vec<LinearRgb>, surface: SurfaceProperties) -> Self {
+        Self { cones, ends: Vec::new(), colors, surface }
+    }
+
+    /// The shapes with round ends, as [`Cone::rounded`] makes them.
+    ///
+    /// # Errors
+    /// Returns an error if a sphere at an end is out of range, with the index of the shape.
+    pub fn rounded(&self) -> Result<Self, (usize, SphereError)> {
+        let color = |index: usize| self.colors.get(index).copied().filter(|_| self.colors.len() > 1);
+        let (mut cones, mut ends) = (Vec::with_capacity(self.cones.len()), Vec::with_capacity(2 * self.cones.len()));
+        let (mut colors, mut of_ends) = (Vec::new(), Vec::new());
+        for (index, cone) in self.cones.iter().enumerate() {
+            let sphere = |[x, y, z]: [f64; 3], radius| [x, y, z, radius];
+            let [first, second] = [sphere(cone.start, cone.radii[0]), sphere(cone.end, cone.radii[1])];
+            let (side, spheres) = Cone::rounded(first, second);
+            colors.extend(side.and(color(index)));
+            cones.extend(side);
+            for end in spheres.into_iter().flatten() {
+                sphere::check(end).map_err(|error| (index, error))?;
+                of_ends.extend(color(index));
+                ends.push(end);
+            }
+        }
+        colors.append(&mut of_ends);
+        if colors.is_empty() {
+            colors.clone_from(&self.colors);
+        }
+        Ok(Self { cones, ends, colors, surface: self.surface })
+    }
+
     /// The looks of the cones.
     pub(super) fn looks(&self) -> impl Iterator<Item = (LinearRgb, SurfaceProperties)> {
         (0..self.cones.len()).map(|index| self.look(index))
@@ -129,6 +163,9 @@ pub(crate) struct ConeTable {
 
 type Pair = List<2>;
 
+/// The tables of a list.
+type Tables<T> = [Spanned<Table<T>>];
+
 /// The keys of a table of either list.
 struct Keys<'a> {
     file: Option<&'a String>,
@@ -216,58 +253,33 @@ fn read(
     let (caps, is_round) = (keys.caps.unwrap_or_default(), keys.is_round);
     let is_open = file.is_some();
     let table = ConesTable { span, name, file, is_open, color: keys.color, surface, caps, is_round };
-    let mut own = OwnCones { cones: Vec::new(), ends: Vec::new(), colors: vec![keys.color], surface };
+    let mut own = OwnCones::new(Vec::new(), vec![keys.color], surface);
     if !table.is_open {
         let missing = |key: &str| at_table.error(format!("missing key `{key}`; add it"));
         let [start, end] = keys.ends.map(|(key, place)| place.ok_or_else(|| missing(key)));
         let radii = keys.radii.ok_or_else(|| missing(kind.radii()));
         let cone = Cone::new(start?, end?, radii?);
-        let name = &table.name;
-        cone.check().map_err(|error| span.error(format!("{name}: {error}")))?;
-        table.add(&mut own, vec![cone], None).map_err(|(_, error)| span.error(format!("{name}: {error}")))?;
+        let refused = |error: &dyn fmt::Display| at_table.error(format!("{}: {error}", table.name));
+        cone.check().map_err(|error| refused(&error))?;
+        own = table.shapes(vec![cone], None).map_err(|(_, error)| refused(&error))?;
     }
     Ok((table, own))
 }
 
 impl ConesTable {
-    /// Adds the shapes of a file that was read.
-    pub(super) fn fill(&mut self, own: &mut OwnCones, set: ConeSet) -> Result<(), SceneFileError> {
+    /// The shapes of a file that was read.
+    pub(super) fn fill(&mut self, set: ConeSet) -> Result<OwnCones, SceneFileError> {
         let file = self.file.as_ref().map_or("", |of| of.file.as_str());
         let refused = |(row, error)| self.span.error(format!("{file}: row {row}: {error}"));
-        self.add(own, set.cones, set.colors).map_err(refused)?;
+        let own = self.shapes(set.cones, set.colors).map_err(refused)?;
         self.is_open = false;
-        Ok(())
+        Ok(own)
     }
 
-    /// Adds shapes that were checked, with the ends that the table asks for. An error comes with the index of a shape.
-    fn add(
-        &self,
-        own: &mut OwnCones,
-        mut cones: Vec<Cone>,
-        colors: Option<Vec<LinearRgb>>,
-    ) -> Result<(), (usize, String)> {
-        if !self.is_round {
-            cones.iter_mut().for_each(|cone| cone.caps = self.caps);
-            own.cones = cones;
-            own.colors = colors.unwrap_or_else(|| vec![self.color]);
-            return Ok(());
-        }
-        let color = |index: usize| colors.as_ref().and_then(|all| all.get(index)).copied();
-        let (mut of_sides, mut of_ends) = (Vec::new(), Vec::new());
-        for (index, cone) in cones.iter().enumerate() {
-            let sphere = |[x, y, z]: [f64; 3], radius| [x, y, z, radius];
-            let [first, second] = [(cone.start, cone.radii[0]), (cone.end, cone.radii[1])].map(|(at, r)| sphere(at, r));
-            let (side, ends) = Cone::rounded(first, second);
-            of_sides.extend(side.and(color(index)));
-            own.cones.extend(side);
-            for end in ends.into_iter().flatten() {
-                sphere::check(end).map_err(|error| (index, error.to_string()))?;
-                of_ends.extend(color(index));
-                own.ends.push(end);
-            }
-        }
-        of_sides.append(&mut of_ends);
-        own.colors = if colors.is_some() { of_sides } else { vec![self.color] };
-        Ok(())
+    /// Shapes that were checked, with the ends and the look that the table says.
+    fn shapes(&self, mut cones: Vec<Cone>, colors: Option<Vec<LinearRgb>>) -> Result<OwnCones, (usize, SphereError)> {
+        cones.iter_mut().for_each(|cone| cone.caps = self.caps);
+        let own = OwnCones::new(cones, colors.unwrap_or_else(|| vec![self.color]), self.surface);
+        if self.is_round { own.rounded() } else { Ok(own) }
     }
 }

@@ -150,7 +150,7 @@ impl SceneFile {
             let Some(file) = &table.file else { continue };
             let mut set = read(file).map_err(|error| table.span.error(error))?;
             notes.append(&mut set.notes);
-            table.fill(own, set)?;
+            *own = table.fill(set)?;
         }
         Ok(notes)
     }

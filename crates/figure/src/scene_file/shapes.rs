@@ -94,7 +94,7 @@ pub(crate) struct SphereTable {
 }
 
 /// The tables of a list.
-pub(super) type Tables<T> = [Spanned<Table<T>>];
+type Tables<T> = [Spanned<Table<T>>];
 
 /// Reads the list `spheres`. A scene checks the spheres.
 pub(super) fn spheres(

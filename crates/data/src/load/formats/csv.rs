@@ -26,7 +26,7 @@ pub fn read(bytes: &[u8], options: &Options) -> Result<Dataset, LoadError> {
         format!("name its {columns} columns in their order, such as with --columns {names}")
     };
     let first = First::of(text, &options.columns, example)?;
-    let table = Table { columns: columns_of(&first)? };
+    let table = Table { columns: columns_of(&first, table::must_be_numbers)? };
     let line_of = |wanted: usize| {
         let (mut row, mut line) = (0, 0);
         drop(first.each_row(|number, _| {
@@ -45,15 +45,16 @@ pub fn read(bytes: &[u8], options: &Options) -> Result<Dataset, LoadError> {
 pub(in crate::load) fn columns(bytes: &[u8], kind: ConeKind) -> Result<Columns, LoadError> {
     let header = kind.names().join(",").replace('.', "_");
     let first = First::of(without_byte_order_mark(bytes), &[], |_| format!("add one, such as {header}"))?;
-    Ok((columns_of(&first)?, Vec::new()))
+    Ok((columns_of(&first, table::is_of_cones)?, Vec::new()))
 }
 
 /// Reads all rows. A column is text if any of its values is, which is known only after all rows; they are then read again.
-fn columns_of(first: &First<'_>) -> Result<Vec<TableColumn>, LoadError> {
+/// Text in a column whose name must be one of numbers is an error.
+fn columns_of(first: &First<'_>, must_be_numbers: fn(&str) -> bool) -> Result<Vec<TableColumn>, LoadError> {
     let mut columns: Vec<_> = first.names.iter().map(|name| ColumnBuilder::new(name)).collect();
-    if read_rows(first, &mut columns)? {
+    if read_rows(first, &mut columns, must_be_numbers)? {
         columns.iter_mut().for_each(ColumnBuilder::clear);
-        read_rows(first, &mut columns)?;
+        read_rows(first, &mut columns, must_be_numbers)?;
     }
     let columns = first.names.iter().zip(columns).map(|(name, column)| column.into_column(name));
     Ok(columns.collect())
@@ -86,7 +87,11 @@ impl ColumnBuilder {
 }
 
 /// Reads all rows. Returns whether a column turned out to be text, so that its values are incomplete.
-fn read_rows(first: &First<'_>, columns: &mut [ColumnBuilder]) -> Result<bool, LoadError> {
+fn read_rows(
+    first: &First<'_>,
+    columns: &mut [ColumnBuilder],
+    must_be_numbers: fn(&str) -> bool,
+) -> Result<bool, LoadError> {
     let declared = columns.len();
     let mut is_new_text = false;
     first.each_row(|line, values| {
@@ -101,7 +106,7 @@ fn read_rows(first: &First<'_>, columns: &mut [ColumnBuilder]) -> Result<bool, L
                     builder.numbers.push(parsed);
                     continue;
                 }
-                if table::must_be_numbers(&first.names[column]) {
+                if must_be_numbers(&first.names[column]) {
                     return Err(rows::not_a_number(value, line, column, &first.names[column]));
                 }
                 (builder.is_text, is_new_text) = (true, true);
