@@ -19,7 +19,7 @@ DATA_KEYS = tuple(key for key in (*keys_of_data(), "elements", "materials") if k
 
 #: The keys of a scene file that are about pictures. They are arguments of ``render``.
 PICTURE_KEYS = tuple(
-    key for key in keys_of("") if key not in {*DATA_KEYS, *_READING, "data", "spheres", "cylinders", "cones", "camera_path"}
+    key for key in keys_of("") if key not in {*DATA_KEYS, *_READING, "data", "spheres", "cylinders", "cones", "tubes", "camera_path"}
 )
 
 #: Short forms of keys of tables, which are called like the flags of the program.

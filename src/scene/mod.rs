@@ -28,6 +28,7 @@ pub mod material;
 mod shared;
 pub mod sphere;
 pub mod sphere_array;
+pub mod tube;
 mod update;
 
 pub use crate::geometry::cone::ConeInFrame;

@@ -216,6 +216,25 @@ pub(super) fn cones(
     cylinders.iter().enumerate().map(cylinder).chain(cones.iter().enumerate().map(cone)).collect()
 }
 
+/// The surface of a table, which must not emit light. The table has a place among the keys, such as `cones.3`, and a name
+/// in words, such as `cone 3`.
+pub(super) fn matt_surface(
+    (list, name): (&str, &str),
+    (material, opacity): (Option<&str>, Option<f64>),
+    materials: &Materials,
+    at_table: Span,
+    places: &Places<'_>,
+) -> Result<SurfaceProperties, SceneFileError> {
+    let surface = over(materials, SurfaceProperties::default(), material, opacity)
+        .map_err(|error| places.refused(list, error))?;
+    if matches!(surface.material, Material::Emissive { .. }) {
+        return Err(at_table.error(format!(
+            "{name}: it has an emissive material, but only spheres emit light; name another material"
+        )));
+    }
+    Ok(surface)
+}
+
 /// Reads a table, which begins at a byte.
 fn read(
     keys: &Keys<'_>,
@@ -230,13 +249,7 @@ fn read(
     };
     let refused = |error: String| places.refused(&list, error);
     let at_table = places.lines.span(byte);
-    let surface = over(materials, SurfaceProperties::default(), keys.material, keys.opacity)
-        .map_err(|error| places.refused(&list, error))?;
-    if matches!(surface.material, Material::Emissive { .. }) {
-        return Err(at_table.error(format!(
-            "{name}: it has an emissive material, but only spheres emit light; name another material"
-        )));
-    }
+    let surface = matt_surface((&list, &name), (keys.material, keys.opacity), materials, at_table, places)?;
     if keys.is_round && keys.caps.is_some() {
         return Err(refused("`caps` and `round` exclude each other; remove one of them".to_owned()));
     }
@@ -267,6 +280,11 @@ fn read(
 }
 
 impl ConesTable {
+    /// The table of shapes that are known.
+    pub(super) const fn of_one(span: Span, name: String, color: LinearRgb, surface: SurfaceProperties) -> Self {
+        Self { span, name, file: None, is_open: false, color, surface, caps: Caps::None, is_round: false }
+    }
+
     /// The shapes of a file that was read.
     pub(super) fn fill(&mut self, set: ConeSet) -> Result<OwnCones, SceneFileError> {
         let file = self.file.as_ref().map_or("", |of| of.file.as_str());

@@ -13,6 +13,7 @@ use super::mapping::{ByColumn, ColumnTable};
 use super::materials::{Materials, over};
 use super::shapes::SphereTable;
 use super::span::{KeyError, SceneFileError, WithSpan, unknown};
+use super::tubes::TubeTable;
 use crate::annotate::{AnnotationPlan, Annotations, Label, LegendPlan, ScaleBarPlan, TextPlan};
 use crate::color_by::{ColorBy, EmissionBy, Mapping, RadiusBy};
 use crate::settings::layers::Joined;
@@ -128,6 +129,9 @@ pub(crate) struct Document {
     /// Cones, which come after the cylinders.
     #[serde(skip_serializing_if = "Vec::is_empty")]
     pub(super) cones: Vec<Spanned<Table<ConeTable>>>,
+    /// Tubes, whose pieces come after the cones.
+    #[serde(skip_serializing_if = "Vec::is_empty")]
+    pub(super) tubes: Vec<Spanned<Table<TubeTable>>>,
 }
 
 /// The keys at the top of a scene file that apply to its data, beside the tables `[elements.NAME]`.

@@ -14,6 +14,7 @@ mod materials;
 mod settled;
 mod shapes;
 pub(crate) mod span;
+mod tubes;
 
 pub use camera_path::parse_camera_path;
 pub use cones::{ConeFile, OwnCones};
@@ -28,6 +29,7 @@ pub use settled::Settled;
 pub use shapes::OwnShapes;
 pub(crate) use shapes::SphereTable;
 pub use span::{DEFAULT_COLOR, SceneFileError};
+pub(crate) use tubes::TubeTable;
 
 use crate::annotate::AnnotationPlan;
 use crate::settings::flags::{FLAGS, Group};
@@ -102,7 +104,8 @@ impl SceneFile {
         let spheres = shapes::spheres(&document.spheres, &document.materials, places)?;
         let (spheres, own_spheres): (Vec<_>, _) = spheres.into_iter().map(|of| (of.span, of.value)).unzip();
         let cones = cones::cones((&document.cylinders, &document.cones), &document.materials, places)?;
-        let (cones, own_cones) = cones.into_iter().unzip();
+        let tubes = tubes::tubes(&document.tubes, &document.materials, places)?;
+        let (cones, own_cones) = cones.into_iter().chain(tubes).unzip();
         let shapes = OwnShapes { spheres: own_spheres, cones: own_cones };
         let has_materials = document.material.is_some()
             || document.opacity.is_some()
@@ -173,11 +176,11 @@ impl SceneFile {
     pub fn at_shape(&self, error: &SceneError) -> SceneFileError {
         let own = &self.shapes.cones;
         let (mut index, what, fault) = match error {
-            SceneError::Sphere { index, error } => {
+            SceneError::Sphere { index, error: of_sphere } => {
                 if let Some(span) = self.spheres.get(*index) {
                     return span.error(error);
                 }
-                (*index - self.spheres.len(), "sphere", error.to_string())
+                (*index - self.spheres.len(), "sphere", of_sphere.to_string())
             }
             SceneError::Cone { index, error } => (*index, "bond or edge", error.to_string()),
             _ => return Span::START.error(error),

@@ -7,7 +7,9 @@ use serde::de::value::{MapAccessDeserializer, MapDeserializer, SeqDeserializer};
 use serde::de::{DeserializeOwned, Deserializer, Error, IntoDeserializer, Visitor};
 use serde::forward_to_deserialize_any;
 
-use crate::scene_file::{ArrowsTable, BondsTable, BoxTable, ConeTable, CylinderTable, Document, SphereTable};
+use crate::scene_file::{
+    ArrowsTable, BondsTable, BoxTable, ConeTable, CylinderTable, Document, SphereTable, TubeTable,
+};
 
 /// A name that no key and no kind has.
 const UNKNOWN: &str = "\0";
@@ -23,6 +25,7 @@ pub fn keys_of(table: &str) -> Vec<&'static str> {
         "spheres" => keys_in::<SphereTable>(""),
         "cylinders" => keys_in::<CylinderTable>(""),
         "cones" => keys_in::<ConeTable>(""),
+        "tubes" => keys_in::<TubeTable>(""),
         // A material is part of the surface properties, which have this key, too.
         table if table.starts_with("materials.") => [keys_in::<Document>(table), vec!["opacity"]].concat(),
         table => keys_in::<Document>(table),

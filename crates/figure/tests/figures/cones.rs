@@ -1,6 +1,7 @@
 //! The cylinders and cones of scene files. Tables that are refused are in `tests/files/refused/scene_files.txt`.
 
 use pinhole::scene::material::{Material, SurfaceProperties};
+use pinhole::scene::tube::Tube;
 use pinhole::scene::{Scene, SceneError};
 use pinhole::{LinearRgb, RenderSettings, SphereArray};
 use pinhole_data::load::{ConeSet, Dataset};
@@ -75,6 +76,27 @@ fn round_ends_are_spheres_behind_those_of_the_file() {
     let navy = LinearRgb::from_srgb8([0, 0, 128]);
     assert_eq!((0..7).filter(|id| scene.color(*id) == navy).collect::<Vec<_>>(), [1, 2, 5]);
     assert_eq!((0..7).filter(|id| scene.surface(*id).opacity < 1.0).collect::<Vec<_>>(), [4]);
+    let (camera, settings) = (file.camera_parameters(), &RenderSettings::studio());
+    let text = file.settled(Settled { camera, settings, sky_image: None, data: None, cone_files: Vec::new() });
+    assert_eq!(parse(&text).shapes(), file.shapes(), "{text}");
+}
+
+#[test]
+fn tubes_come_behind_cones_and_round_ends() {
+    let file = parse(
+        "[[tubes]]\npoints = [[0, 0, 0], [0, 0, 2], [0, 2, 2]]\nradii = [0.5, 0.2, 0.5]\ncolor = 'navy'\nopacity = 0.5\n\
+         [[tubes]]\npoints = [[5, 0, 0], [6, 0, 0]]\nradius = 1\n\
+         [[cylinders]]\nstart = [9, 0, 0]\nend = [9, 0, 4]\nradius = 0.5\nround = true\n",
+    );
+    let tube = Tube::through(&[[0.0, 0.0, 0.0, 0.5], [0.0, 0.0, 2.0, 0.2], [0.0, 2.0, 2.0, 0.5]]);
+    let scene = file.scene().unwrap();
+    let (spheres, sides) = (tube.spheres.len(), tube.sides.len());
+    assert_eq!([scene.len(), scene.cones().len()], [2 + spheres + 2, 1 + sides + 1]);
+    let f32s: Vec<[f32; 4]> = tube.spheres.iter().map(|sphere| sphere.map(|value| value as f32)).collect();
+    assert_eq!(scene.spheres()[2..2 + spheres], f32s);
+    let navy = LinearRgb::from_srgb8([0, 0, 128]);
+    let of_tube = scene.len() as u32 + 1;
+    assert_eq!((scene.color(2), scene.color(of_tube), scene.surface(of_tube).opacity), (navy, navy, 0.5));
     let (camera, settings) = (file.camera_parameters(), &RenderSettings::studio());
     let text = file.settled(Settled { camera, settings, sky_image: None, data: None, cone_files: Vec::new() });
     assert_eq!(parse(&text).shapes(), file.shapes(), "{text}");

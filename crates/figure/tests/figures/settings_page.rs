@@ -14,6 +14,7 @@ use pinhole_figure::settings::{
 
 const FILES: &str = "crates/figure/src/scene_file/document.rs";
 const SHAPES: &str = "crates/figure/src/scene_file/shapes.rs";
+const CONES: &str = "crates/figure/src/scene_file/cones.rs";
 const DATA: &str = "crates/figure/src/scene_file/data.rs";
 const MAPPING: &str = "crates/figure/src/color_by/mapping.rs";
 const PLAN: &str = "crates/figure/src/annotate/plan.rs";
@@ -25,7 +26,7 @@ const MATERIAL: &str = "src/scene/material.rs";
 const CAMERA_PATH: &str = "crates/figure/src/scene_file/camera_path.rs";
 
 /// The tables of a scene file, each with the file and the structs that have its keys.
-const TABLES: [(&str, &str, &[&str]); 34] = [
+const TABLES: [(&str, &str, &[&str]); 35] = [
     ("", FILES, &["Document"]),
     ("elements.NAME", DATA, &["ElementTable"]),
     ("box", DATA, &["BoxTable"]),
@@ -36,8 +37,9 @@ const TABLES: [(&str, &str, &[&str]); 34] = [
     ("opacity_by", "crates/figure/src/scene_file/mapping.rs", &["ColumnTable"]),
     ("emission_by", MAPPING, &["EmissionBy"]),
     ("spheres", SHAPES, &["SphereTable"]),
-    ("cylinders", SHAPES, &["CylinderTable"]),
-    ("cones", SHAPES, &["ConeTable"]),
+    ("cylinders", CONES, &["CylinderTable"]),
+    ("cones", CONES, &["ConeTable"]),
+    ("tubes", "crates/figure/src/scene_file/tubes.rs", &["TubeTable"]),
     ("film", FILES, &["FilmTable"]),
     ("output", FILES, &["OutputTable"]),
     ("camera.pinhole", CAMERAS, &["PinholeParameters"]),
