@@ -11,6 +11,7 @@ mod npy_files;
 mod bricks;
 mod certified;
 mod certify;
+mod cones;
 mod data;
 mod frames;
 mod input;
