@@ -47,6 +47,8 @@ class Cylinders(Shapes):
 
     __slots__ = ("_count",)
 
+    _count: int
+
     def __init__(
         self,
         start: Any,
@@ -93,6 +95,8 @@ class Cones(Shapes):
     """
 
     __slots__ = ("_count",)
+
+    _count: int
 
     def __init__(
         self,

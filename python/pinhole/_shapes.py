@@ -19,6 +19,7 @@ from ._image import Image
 from ._movie import movie
 from ._orbit import rotation
 from ._pinhole import SphereData
+from ._settings import Text
 
 if TYPE_CHECKING:
     from ._pinhole import JoinedFrames
@@ -72,7 +73,7 @@ class Shapes:
         """Returns the text of the scene file for a picture with these settings. It names the data ``spheres``."""
         return self._text(settings)[0]
 
-    def _text(self, settings: Mapping[str, Any]) -> _settings.Text:
+    def _text(self, settings: Mapping[str, Any]) -> Text:
         tables = _settings.picture_settings(settings)
         tables = {"style": _settings.style_of(tables), **tables}
         camera = tables.pop("camera", None)

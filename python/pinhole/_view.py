@@ -18,6 +18,7 @@ from ._errors import Error, InputError
 from ._image import Image
 from ._orbit import Orbit
 from ._refine import Refiner, Stage, checked_size, screen_size
+from ._shapes import counted
 from ._spheres import Spheres
 
 if TYPE_CHECKING:
@@ -73,8 +74,10 @@ class View(anywidget.AnyWidget):
         self._refiner = Refiner(
             spheres, self._first, self._shown_size, self._settings, self._show, self._fail
         )  # fmt: skip
-        name = f"picture of {len(spheres)} {'sphere' if len(spheres) == 1 else 'spheres'}"
-        super().__init__(_size=self._page_size(), _name=name)
+        data = spheres._data
+        is_spheres = isinstance(spheres, Spheres)
+        name = counted(len(data), "sphere") if is_spheres else counted(len(data) + data.cone_count(), "shape")
+        super().__init__(_size=self._page_size(), _name=f"picture of {name}")
         self.on_msg(self._on_message)
         self.observe(self._on_picked, "picked")
         self.refresh()

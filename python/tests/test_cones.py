@@ -66,7 +66,7 @@ def test_material_and_opacity_are_those_of_all():
     start, end = rods()
     plain, clear = ph.Cylinders(start, end, 0.3), ph.Cylinders(start, end, 0.3, opacity=0.25)
     gold = ph.Cylinders(start, end, 0.3, material=ph.Material(kind="conductor", roughness=0.3))
-    pictures = [np.asarray(picture(shapes)) for shapes in (plain, clear, gold, plain + clear)]
+    pictures = [np.asarray(picture(shapes, style="path")) for shapes in (plain, clear, gold, plain + clear)]
     assert all(not np.array_equal(one, other) for one, other in zip(pictures, pictures[1:]))
 
 
@@ -86,7 +86,7 @@ def test_material_and_opacity_are_those_of_all():
         (lambda a, b: ph.Cylinders(a, b, 1, color="no color"), "color"),
         (lambda a, b: ph.Cylinders(a, b, 1, material=ph.Material(kind="emissive", strength=1)), "only spheres emit"),
         (lambda a, b: ph.Cones(a, b, 1), r"radii has the shape \(\); it must be \(2,\)"),
-        (lambda a, b: ph.Spheres(a).render(cylinders=[]), "there is no argument cylinders"),
+        (lambda a, b: ph.Spheres(a, 1).render(cylinders=[]), "there is no argument cylinders"),
     ],
 )
 def test_what_is_refused(make, words):
