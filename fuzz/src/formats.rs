@@ -6,10 +6,10 @@ use std::path::Path;
 
 use fastrand::Rng;
 use flate2::{Compression, write::GzEncoder};
-use pinhole_data::load::{self, ColumnValues, Dataset, Format, LoadError, Options, Trajectory};
+use pinhole_data::load::{self, ColumnValues, ConeKind, ConeSet, Dataset, Format, LoadError, Options, Trajectory};
 use tempfile::TempDir;
 
-use crate::{Target, check_message, seeds};
+use crate::{Target, check_message, checked, seeds};
 
 /// The good files of a format, which are damaged, and all options that one of them needs.
 pub(crate) fn target(format: &'static Format, folder: TempDir) -> Target {
@@ -57,6 +57,25 @@ fn read_all(format: &'static Format, bytes: &[u8], options: &Options, file: &Pat
     check_message(trajectory.problem().map(LoadError::to_string))?;
     let last = trajectory.len().checked_sub(1).ok_or("a trajectory has no frames")?;
     [0, last, random.usize(0..=last), last + 1].into_iter().try_for_each(|index| check(trajectory.frame(index)))
+}
+
+/// Files of cylinders and cones.
+pub(crate) fn cones(folder: TempDir) -> Target {
+    let files = Path::new(env!("CARGO_MANIFEST_DIR")).join("../crates/data/tests/files/cones");
+    let mut paths: Vec<_> = fs::read_dir(files).unwrap().map(|entry| entry.unwrap().path()).collect();
+    paths.sort();
+    let read = |bytes: &[u8]| {
+        let name = if bytes.starts_with(b"PK") || bytes.starts_with(b"\x93") { "" } else { "a.csv" };
+        for (kind, radii) in [(ConeKind::Cylinder, None), (ConeKind::Cone, None), (ConeKind::Cone, Some([1.0, 0.5]))] {
+            let Some(set) = checked(ConeSet::from_bytes(bytes, name, kind, radii))? else { continue };
+            if set.colors.is_some_and(|colors| colors.len() != set.cones.len()) {
+                return Err(format!("{} cones have other numbers of colors", set.cones.len()));
+            }
+            check_message(set.notes)?;
+        }
+        Ok(())
+    };
+    Target::new(folder, paths.iter().map(|path| fs::read(path).unwrap()).collect(), read)
 }
 
 /// Checks that the data are consistent, or that the error is one line.

@@ -38,7 +38,8 @@ pub struct Target {
 type Named = (&'static str, fn(TempDir) -> Target);
 
 /// The kinds of files beside the formats of spheres.
-const OTHERS: [Named; 10] = [
+const OTHERS: [Named; 11] = [
+    ("cones", formats::cones),
     ("scene", figures::scene),
     ("camera-path", figures::camera_path),
     ("selection", figures::selection),

@@ -81,6 +81,22 @@ fn colors_are_those_of_files_of_spheres_and_other_arrays_are_named() {
     assert_eq!(read(table, "a.csv", KINDS[0]).unwrap().colors.unwrap(), [LinearRgb::from_srgb8([0, 128, 255])]);
 }
 
+/// These files, which NumPy wrote, are what the fuzzer damages.
+#[test]
+fn good_files_are_read() {
+    let folder = std::path::Path::new(env!("CARGO_MANIFEST_DIR")).join("tests/files/cones");
+    for (name, kind, has_colors) in [
+        ("cylinders.npz", KINDS[0], true),
+        ("cylinders.npy", KINDS[0], false),
+        ("cones.npz", KINDS[1], false),
+        ("cones.csv", KINDS[1], true),
+    ] {
+        let found = read(&std::fs::read(folder.join(name)).unwrap(), name, kind).unwrap();
+        assert_eq!((found.cones.len(), found.colors.is_some(), found.notes), (2, has_colors, vec![]), "{name}");
+        assert_eq!(found.cones[0].start, [0.0; 3]);
+    }
+}
+
 #[test]
 fn files_that_are_no_cylinders_or_cones_are_refused() {
     let short = npy("<f8", false, "(1, 3)", &[0; 24]);
