@@ -168,5 +168,5 @@ def _make(
     shapes._count, shapes.camera = count, None
     radii = np.ascontiguousarray(_arrays.floats(radii, np.float64))
     text = _settings.data_text(shapes._settings)
-    shapes._data = SphereData.of_cones(start, end, radii, colors, caps or "both", bool(round), text)
+    shapes._data = SphereData.of_cones([start, end, radii], colors, caps or "both", bool(round), text)
     warn(shapes._data.notes)

@@ -22,23 +22,15 @@ pub(crate) fn caps_of_name(name: &str) -> Outcome<Caps> {
     }
 }
 
-/// Makes cones of arrays whose shapes Python has checked.
-pub(crate) fn cones(
-    start: ArrayView2<'_, f64>,
-    end: ArrayView2<'_, f64>,
-    radii: ArrayView2<'_, f64>,
-    caps: Caps,
-) -> Vec<Cone> {
-    let ends = start.rows().into_iter().zip(end.rows()).zip(radii.rows());
-    let cone = |((start, end), radii): ((_, _), _)| {
-        let place = |row: numpy::ndarray::ArrayView1<'_, f64>| [row[0], row[1], row[2]];
-        let radii: numpy::ndarray::ArrayView1<'_, f64> = radii;
-        Cone::new(place(start), place(end), [radii[0], radii[1]]).with_caps(caps)
-    };
-    ends.map(cone).collect()
+/// Makes cones of their starts, ends and pairs of radii, arrays whose shapes Python has checked.
+pub(crate) fn cones([start, end, radii]: [ArrayView2<'_, f64>; 3], caps: Caps) -> Vec<Cone> {
+    let place = |array: &ArrayView2<'_, f64>, row: usize| [0, 1, 2].map(|axis| array[[row, axis]]);
+    let radii = |row: usize| [radii[[row, 0]], radii[[row, 1]]];
+    let cone = |row: usize| Cone::new(place(&start, row), place(&end, row), radii(row)).with_caps(caps);
+    (0..start.nrows()).map(cone).collect()
 }
 
-/// A scene of cones with the look that the text gives to data. `what` names one of them, for messages.
+/// A scene of cones with the look that the text gives to data.
 pub(crate) fn scene_of_cones(
     cones: Vec<Cone>,
     colors: Option<Vec<LinearRgb>>,

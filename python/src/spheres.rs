@@ -146,19 +146,17 @@ impl SphereData {
 
     /// Makes cones of arrays that Python has checked.
     #[staticmethod]
-    #[pyo3(signature = (start, end, radii, color, caps, round, text))]
+    #[pyo3(signature = (arrays, color, caps, round, text))]
     fn of_cones(
         py: Python<'_>,
-        start: PyReadonlyArray2<'_, f64>,
-        end: PyReadonlyArray2<'_, f64>,
-        radii: PyReadonlyArray2<'_, f64>,
+        arrays: [PyReadonlyArray2<'_, f64>; 3],
         color: Option<ColorArray<'_>>,
         caps: &str,
         round: bool,
         text: SceneText,
     ) -> PyResult<Self> {
         let caps = cones::caps_of_name(caps)?;
-        let cones = cones::cones(start.as_array(), end.as_array(), radii.as_array(), caps);
+        let cones = cones::cones(arrays.each_ref().map(|array| array.as_array()), caps);
         let colors = color.as_ref().map(ColorArray::linear).transpose()?;
         Ok(worker::run(py, None, move |_| Ok(Self::of_scene(cones::scene_of_cones(cones, colors, round, &text)?)))?)
     }

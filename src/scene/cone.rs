@@ -190,6 +190,7 @@ pub(super) fn check_in_frame(cone: &ConeInFrame) -> Result<(), ConeError> {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::geometry::math::unit;
 
     #[test]
     fn what_is_wrong_with_a_cone_is_said() {
@@ -227,10 +228,10 @@ mod tests {
             assert_eq!((cone.check(), cone.caps), (Ok(()), Caps::None));
             assert_eq!(spheres, [Some(first), (second[3] > 0.0).then_some(second)]);
             let [start, end] = [cone.start, cone.end].map(DVec3::from);
-            let axis = (end - start).normalize();
+            let axis = unit(end - start);
             let across = axis.any_orthonormal_vector();
             let slope = (cone.radii[0] - cone.radii[1]) / (end - start).length();
-            let normal_of_side = (across + axis * slope).normalize();
+            let normal_of_side = unit(across + axis * slope);
             for ([x, y, z, radius], middle, of_cone) in [(first, start, cone.radii[0]), (second, end, cone.radii[1])] {
                 let from_center = middle + across * of_cone - DVec3::new(x, y, z);
                 assert!((from_center.length() - radius).abs() < 1e-12, "the circle is on the sphere");
