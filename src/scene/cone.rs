@@ -228,10 +228,10 @@ mod tests {
             assert_eq!((cone.check(), cone.caps), (Ok(()), Caps::None));
             assert_eq!(spheres, [Some(first), (second[3] > 0.0).then_some(second)]);
             let [start, end] = [cone.start, cone.end].map(DVec3::from);
-            let axis = unit(end - start);
+            let axis = unit(end - start).unwrap();
             let across = axis.any_orthonormal_vector();
             let slope = (cone.radii[0] - cone.radii[1]) / (end - start).length();
-            let normal_of_side = unit(across + axis * slope);
+            let normal_of_side = unit(across + axis * slope).unwrap();
             for ([x, y, z, radius], middle, of_cone) in [(first, start, cone.radii[0]), (second, end, cone.radii[1])] {
                 let from_center = middle + across * of_cone - DVec3::new(x, y, z);
                 assert!((from_center.length() - radius).abs() < 1e-12, "the circle is on the sphere");
