@@ -166,10 +166,11 @@ impl SphereData {
         let other = other.get();
         let scenes = [self.scene(), other.scene()];
         let key = self.key.clone().or_else(|| other.key.clone());
+        let arrow_key = self.arrow_key.clone().or_else(|| other.arrow_key.clone());
         let z_is_up = self.z_is_up || other.z_is_up;
         Ok(worker::run(py, None, move |_| {
             let scene = cones::joined([&scenes[0], &scenes[1]])?;
-            Ok(Self { key, z_is_up, ..Self::of_scene(scene) })
+            Ok(Self { key, arrow_key, z_is_up, ..Self::of_scene(scene) })
         })?)
     }
 

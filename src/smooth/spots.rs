@@ -5,7 +5,8 @@ use glam::{DVec2, DVec3};
 use crate::camera::film::Film;
 use crate::camera::sampling::{pair, pixel_seed};
 use crate::camera::{View, filter};
-use crate::geometry::cone_crossing::intersect;
+use crate::geometry::cone::ConeInFrame;
+use crate::geometry::cone_crossing::{crossings, intersect};
 use crate::geometry::math::wide;
 use crate::geometry::ray::Ray;
 use crate::image::NO_ID;
@@ -245,6 +246,12 @@ impl<'a> Finder<'a> {
         for (place, id) in places.iter_mut().zip(shown) {
             *place = (*id != NO_ID).then(|| self.shapes.shape(*id));
         }
+        // Through an open end, a ray sees the inside of a cone only if nothing is there that is not among those shown, such as
+        // the next piece of a tube. So the ray through the centre must see an inside, too.
+        let is_inside = |ray: &Ray, normal: DVec3| normal.dot(ray.direction) > 0.0;
+        let middle = self.ray(pixel, DVec2::ZERO).zip(places[0]);
+        let shows_inside = middle
+            .is_some_and(|(ray, shape)| crossing(&ray, &shape).is_some_and(|(_, normal)| is_inside(&ray, normal)));
         let mut missing = 0;
         for offset in &self.offsets {
             let ray = self.ray(pixel, *offset);
@@ -257,7 +264,8 @@ impl<'a> Finder<'a> {
                     }
                 }
             }
-            match (nearest, ray) {
+            match (nearest, &ray) {
+                (Some((.., normal)), Some(ray)) if is_inside(ray, normal) && !shows_inside => {}
                 (Some((t, k, normal)), Some(ray)) => {
                     let position = ray.at(t);
                     let hit = Hits { count: 1, position, direction: ray.direction, distance: t, normal, ..hits[k] };
@@ -320,8 +328,29 @@ fn with_neighbors(film: &Film) -> Film {
 fn crossing(ray: &Ray, shape: &Shape) -> Option<(f64, DVec3)> {
     match shape {
         Shape::Sphere([x, y, z, radius]) => Some((distance(ray, wide([*x, *y, *z]), (*radius).into())?, DVec3::ZERO)),
-        Shape::Cone(cone) => intersect(ray, cone),
+        Shape::Cone(cone) => {
+            let hit = crossings(ray, cone)?.into_iter().find(|crossing| crossing.t > 0.0)?;
+            match hit.normal.or_else(|| normal_at_rim(cone, ray.at(hit.t))) {
+                Some(normal) => Some((hit.t, normal)),
+                None => intersect(ray, cone),
+            }
+        }
     }
+}
+
+/// The width of a rim at which a ray may be taken to meet the side, as a part of the radius.
+const RIM: f64 = 1e-3;
+
+/// The normal of the side at a point of an open end, if it is at the rim. A device may find a cone there whose side the ray
+/// misses by rounding. What is behind the open end is not what the device has found: another shape often joins the side.
+fn normal_at_rim(cone: &ConeInFrame, point: DVec3) -> Option<DVec3> {
+    let ([start, end], [first, second]) = (cone.ends(), cone.radii());
+    let (span, from_start) = (end - start, point - start);
+    let part = from_start.dot(span) / span.length_squared();
+    let away = from_start - part * span;
+    let radius = first + part * (second - first);
+    let slope = radius * (second - first) / span.length_squared();
+    (away.length() >= (1.0 - RIM) * radius).then(|| (away - slope * span).normalize_or_zero())
 }
 
 /// The distance at which a ray comes nearest to the middle of a shape or to the axis of a cone, and the direction from there.

@@ -3,9 +3,11 @@
 use pinhole::camera::{PinholeCamera, Pose};
 use pinhole::geometry::math::unit;
 use pinhole::glam::DVec3;
+use pinhole::image::NO_ID;
 use pinhole::light::{Light, LightFrame, LightKind};
 use pinhole::render::{Occlusion, Sampling, Studio};
 use pinhole::scene::cone::{Caps, Cone};
+use pinhole::scene::tube::Tube;
 use pinhole::{Film, Image, Integrator, LayerSet, LinearRgb, RenderSettings, Scene, SphereArray, View, cpu};
 
 use crate::support::cones::mixed;
@@ -93,5 +95,47 @@ fn smooth_light_is_close_to_random_rays() {
             let [rms, mean] = difference(&smooth, &picture(&scene, lamp, 64, false));
             assert!(rms < 0.07 && mean.abs() < 0.015, "{name}, {light}: {rms} rms, {mean} mean");
         }
+    }
+}
+
+/// A tube of many pieces looks like one body: no pixel is darker or lighter than what is on both of its sides.
+#[test]
+fn a_tube_has_no_seams() {
+    let at = |t: f64| [3.0 * t, (2.0 * t).sin(), 0.4 * (3.0 * t).cos(), 0.3 + 0.05 * (5.0 * t).sin()];
+    let points: Vec<[f64; 4]> = (0..14).map(|k| at(f64::from(k) / 4.0)).collect();
+    let tube = Tube::through(&points);
+    let scene = white(tube.spheres, &tube.sides);
+    assert!(scene.cones().len() > 100);
+    let size = scene.bounds_to_frame().size().length();
+    let center = scene.bounds_to_frame().center();
+    let studio = Studio { is_smooth: true, shadows: false, ..Studio::default() };
+    let toward = unit(DVec3::new(-0.5, 0.75, 0.9)).unwrap();
+    let kind = LightKind::Directional { toward, strength: LinearRgb::WHITE, angular_radius: 0.0 };
+    let settings = RenderSettings {
+        integrator: Integrator::Studio(studio),
+        lights: vec![Light { kind, frame: LightFrame::World }],
+        sampling: Sampling { samples: 8, ..Sampling::default() },
+        ..RenderSettings::default()
+    };
+    let search = cpu::SearchStructure::new(&scene).unwrap();
+    let pose = Pose::looking_at(center + size * DVec3::new(0.0, 0.3, 2.0), center, DVec3::Y).unwrap();
+    let camera = PinholeCamera::with_vertical_fov(pose, 0.4, 1.0).unwrap();
+    // Pixels are about as large as pieces.
+    for side in [120, 170] {
+        let film = Film::new(side, side).unwrap();
+        let width = film.width() as usize;
+        let image = cpu::render(&search, &View::new(&camera, film), &settings, LayerSet::ALL).unwrap();
+        let (ids, color) = (image.id().unwrap(), image.color());
+        let (mut inside, mut worst) = (0, 0.0_f32);
+        for at in width + 1..ids.len() - width - 1 {
+            let around = [[at - 1, at + 1], [at - width, at + width]];
+            if around.iter().flatten().chain(&[at]).any(|at| ids[*at] == NO_ID) {
+                continue;
+            }
+            inside += 1;
+            let bend = around.map(|[a, b]| (color[at][1] - 0.5 * (color[a][1] + color[b][1])).abs());
+            worst = worst.max(bend[0].min(bend[1]));
+        }
+        assert!(inside > 800 && worst < 0.2, "{side}: {inside} pixels, {worst}");
     }
 }

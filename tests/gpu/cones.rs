@@ -2,14 +2,15 @@
 
 use libtest_mimic::Trial;
 use pinhole::accel::AccelChoice;
-use pinhole::camera::{Camera, FisheyeCamera, OrthographicCamera, PinholeCamera, Pose};
+use pinhole::camera::{Camera, FisheyeCamera, OrthographicCamera, PanoramaCamera, PinholeCamera, Pose};
 use pinhole::gpu::{Headless, PictureRequest, Wait};
 use pinhole::image::NO_ID;
 use pinhole::render::Studio;
-use pinhole::verify::Outcome;
+use pinhole::verify::{Outcome, Verdict};
 use pinhole::{Film, Image, Integrator, LayerSet, RenderSettings, Scene, View, cpu};
 
-use crate::support::cones::mixed;
+use crate::support::cones::{hostile, mixed};
+use crate::support::effort::share;
 use crate::trial;
 
 pub(crate) fn trials() -> Vec<Trial> {
@@ -17,6 +18,7 @@ pub(crate) fn trials() -> Vec<Trial> {
         trial("cones::pictures_agree_with_the_reference", agree),
         trial("cones::lists_and_trees_agree", structures),
         trial("cones::pictures_are_proved", proved),
+        trial("cones::hostile_scenes_are_proved", hostile_scenes),
         trial("cones::smooth_pictures_agree_with_the_reference", smooth),
     ]
 }
@@ -89,6 +91,46 @@ fn proved(headless: &'static Headless) {
         }
     }
     assert!(open * 200 < all, "{open} of {all} are open");
+}
+
+/// The number of hostile scenes, if all of the campaign runs.
+const HOSTILE: u64 = 2000;
+
+/// The checker accuses no picture of scenes with everything that is hard, from all cameras, also from inside shapes and along
+/// axes, and leaves few answers open. The structure and the order of shapes differ from scene to scene.
+fn hostile_scenes(headless: &'static Headless) {
+    let settings = RenderSettings::default();
+    let film = Film::new(40, 40).unwrap();
+    let (mut silhouettes, mut ties, mut all) = (0, 0, 0);
+    for seed in share(0..HOSTILE) {
+        let mut random = fastrand::Rng::with_seed(seed);
+        let (scene, middle, size) = hostile(&mut random);
+        let mut eye =
+            [0, 1, 2].map(|axis| middle[axis] + size * (random.f64() - 0.5) * [1.0, 8.0, 24.0][seed as usize % 3]);
+        let mut target = middle;
+        if random.bool() {
+            // Along an axis, through places of the grid.
+            (eye, target) = (middle.map(|x| x + 0.25 * size), middle.map(|x| x + 0.25 * size));
+            eye[random.usize(..3)] += 9.0 * size;
+        }
+        let pose = Pose::looking_at(eye, target, [0.1, 0.9, 0.3]).unwrap();
+        let camera: Box<dyn Camera> = match seed / 3 % 4 {
+            0 => Box::new(PinholeCamera::with_vertical_fov(pose, 0.8, 1.0).unwrap()),
+            1 => Box::new(OrthographicCamera::new(pose, [4.0 * size; 2]).unwrap()),
+            2 => Box::new(FisheyeCamera::new(pose, 2.5, 1.0).unwrap()),
+            _ => Box::new(PanoramaCamera::new(pose)),
+        };
+        let view = View::new(camera.as_ref(), film);
+        let certificate = headless.verify(&scene, &view, &settings).wait().unwrap();
+        assert!(certificate.outcome() != Outcome::Violated, "seed {seed}: {certificate}");
+        let count = |verdict: Verdict| certificate.verdicts.iter().filter(|found| **found == verdict).count();
+        silhouettes += count(Verdict::Silhouette);
+        ties += count(Verdict::Tie);
+        all += certificate.verdicts.len();
+    }
+    assert!(silhouettes * 1000 < all, "{silhouettes} of {all} may be misses as well");
+    // Discs of several shapes are in one plane, so that any of them is legal.
+    assert!(ties * 50 < all, "{ties} of {all} may be another shape");
 }
 
 /// Pictures by different structures are the same, to the bit.

@@ -1,5 +1,7 @@
 //! Scenes with cones and cylinders.
 
+use fastrand::Rng;
+
 use pinhole::scene::cone::{Caps, Cone};
 use pinhole::{LinearRgb, Scene, SphereArray};
 
@@ -27,4 +29,57 @@ pub(crate) fn mixed(spheres: usize, cones: usize, size: f64, seed: u64) -> Scene
         })
         .collect();
     Scene::from_shapes(SphereArray::F64(balls), &cones, LinearRgb::new([0.6, 0.5, 0.4]).unwrap().into()).unwrap()
+}
+
+/// A scene of any size at any place, with what is hard: cones and cylinders that are parallel to an axis, needles and
+/// discs, some in one place or with common ends, tangent ones on a grid, tips, radii that hardly differ, and spheres.
+/// Returns also the middle and the size.
+pub(crate) fn hostile(random: &mut Rng) -> (Scene, [f64; 3], f64) {
+    let size = 10.0_f64.powi(random.i32(-3..4));
+    let far = if random.u32(..4) == 0 { 100.0 * size } else { 0.0 };
+    let middle = [0; 3].map(|_| far * (random.f64() - 0.5));
+    let on_grid = random.bool();
+    let place = |random: &mut Rng| {
+        middle.map(|middle| {
+            let at = 8.0 * random.f64() - 4.0;
+            middle + size * if on_grid { 0.5 * (2.0 * at).round() } else { at }
+        })
+    };
+    let count = random.usize(1..40);
+    let places: Vec<[f64; 3]> = (0..=count).map(|_| place(random)).collect();
+    let (mut balls, mut cones) = (Vec::new(), Vec::new());
+    for index in 0..count {
+        let mut start = places[index];
+        if random.u32(..5) == 0 {
+            let [x, y, z] = start;
+            balls.push([x, y, z, size * [0.25, 0.5, 0.01 + random.f64()][random.usize(..3)]]);
+            continue;
+        }
+        let mut end = places[index + 1];
+        match random.u32(..5) {
+            0 => {
+                end = start;
+                end[random.usize(..3)] += size * [-1.0, 0.5, 1.0, 2.0][random.usize(..4)];
+            }
+            1 => (start, end) = (places[0], places[1]),
+            _ => {}
+        }
+        let length = [0, 1, 2].map(|axis| end[axis] - start[axis]).iter().fold(0.0_f64, |sum, x| sum.hypot(*x));
+        if length == 0.0 {
+            continue;
+        }
+        let aspect = if random.u32(..3) == 0 { 8.0 * random.f64() - 4.0 } else { 1.3 * random.f64() };
+        let radius = match random.u32(..4) {
+            0 if on_grid => 0.25 * size,
+            _ => (length * 0.99 / 10.0_f64.powf(aspect)).min(3.0 * size),
+        };
+        let other = [radius, 0.0, radius * random.f64(), radius * (1.0 + 1e-6)][random.usize(..4)];
+        let mut radii = [radius, other];
+        random.shuffle(&mut radii);
+        let cone = Cone::new(start, end, radii);
+        let caps = [Caps::Both, Caps::None, Caps::First, Caps::Second][random.usize(..4)];
+        cones.extend(cone.check().is_ok().then(|| cone.with_caps(caps)));
+    }
+    let color = LinearRgb::new([0.6, 0.5, 0.4]).unwrap();
+    (Scene::from_shapes(SphereArray::F64(balls), &cones, color.into()).unwrap(), middle, size)
 }
