@@ -143,7 +143,11 @@ pub(crate) struct BondsTable {
 
 /// The key `arrows`.
 #[derive(Clone, Debug, Deserialize, Serialize)]
-#[serde(untagged, expecting = "expected the name of a vector, or a table with the key `vector`")]
+#[serde(
+    untagged,
+    expecting = "expected the name of a vector, or a table with `vector` and any of `scale`, `radius`, `color`, `min` and \
+                 `at`, which is start or middle"
+)]
 pub(super) enum ArrowsValue {
     Vector(String),
     Table(ArrowsTable),
