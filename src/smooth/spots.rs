@@ -249,9 +249,10 @@ impl<'a> Finder<'a> {
         // Through an open end, a ray sees the inside of a cone only if nothing is there that is not among those shown, such as
         // the next piece of a tube. So the ray through the centre must see an inside, too.
         let is_inside = |ray: &Ray, normal: DVec3| normal.dot(ray.direction) > 0.0;
-        let middle = self.ray(pixel, DVec2::ZERO).zip(places[0]);
-        let shows_inside = middle
-            .is_some_and(|(ray, shape)| crossing(&ray, &shape).is_some_and(|(_, normal)| is_inside(&ray, normal)));
+        let shows_inside = || {
+            let middle = self.ray(pixel, DVec2::ZERO).zip(places[0]);
+            middle.is_some_and(|(ray, shape)| crossing(&ray, &shape).is_some_and(|(_, normal)| is_inside(&ray, normal)))
+        };
         let mut missing = 0;
         for offset in &self.offsets {
             let ray = self.ray(pixel, *offset);
@@ -265,7 +266,7 @@ impl<'a> Finder<'a> {
                 }
             }
             match (nearest, &ray) {
-                (Some((.., normal)), Some(ray)) if is_inside(ray, normal) && !shows_inside => {}
+                (Some((.., normal)), Some(ray)) if is_inside(ray, normal) && !shows_inside() => {}
                 (Some((t, k, normal)), Some(ray)) => {
                     let position = ray.at(t);
                     let hit = Hits { count: 1, position, direction: ray.direction, distance: t, normal, ..hits[k] };

@@ -37,7 +37,7 @@ pub(crate) struct Details {
     pub(crate) has_atoms: bool,
     /// What colors mean, if a column gives them.
     pub(crate) color_key: Option<ColorKey>,
-    /// What arrows mean, if there are any.
+    /// The meaning of arrows, if there are any.
     pub(crate) arrow_key: Option<ArrowKey>,
     /// The colors by kind that no flag asked for.
     pub(crate) kinds: Option<ColorBy>,

@@ -40,7 +40,7 @@ pub(crate) struct Input {
     pub(crate) encoding: Encoding,
     /// What colors mean, if a column of the data gives them.
     pub(crate) color_key: Option<ColorKey>,
-    /// What arrows mean, if there are any.
+    /// The meaning of arrows, if there are any.
     pub(crate) arrow_key: Option<ArrowKey>,
     /// What the scene file draws over the picture.
     pub(crate) annotations: AnnotationPlan,

@@ -24,7 +24,7 @@ pub struct Arrows {
     pub color: LinearRgb,
     /// The length of the shortest vector that has an arrow.
     pub min: f64,
-    /// Whether the middle of an arrow, and not its start, is at the centre of its sphere.
+    /// True if the middle of an arrow, and not its start, is at the centre of its sphere.
     pub is_centered: bool,
 }
 

@@ -27,7 +27,7 @@ impl ConeKind {
         }
     }
 
-    /// What a file has beside both ends, for messages.
+    /// The columns of radii that a file has beside both ends, for messages.
     pub(super) const fn columns(self) -> &'static str {
         match self {
             Self::Cylinder => "`radius`, of shape (n,) in an archive",

@@ -399,7 +399,7 @@ pub(super) fn must_be_numbers(name: &str) -> bool {
     POSITIONS.as_flattened().contains(&name) || RADII.contains(&name) || DIAMETERS.contains(&name)
 }
 
-/// Whether a column with this name has ends or radii of cylinders or cones.
+/// True if a column with this name has ends or radii of cylinders or cones.
 pub(super) fn is_of_cones(name: &str) -> bool {
     let name = plain(name);
     ["start.", "end.", "radius", "radii", "diameter"].iter().any(|start| name.starts_with(start))

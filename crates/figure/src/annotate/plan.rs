@@ -75,10 +75,6 @@ pub enum AnnotationError {
     ScaleBar(#[from] ScaleBarError),
 }
 
-fn no_arrow(error: &ScaleBarError) -> String {
-    format!("the legend has no arrow: {error}")
-}
-
 impl AnnotationPlan {
     /// Returns true if there is nothing to draw.
     #[must_use]
@@ -140,14 +136,14 @@ impl AnnotationPlan {
                 return Err(AnnotationError::NoKey);
             }
             let width = view.film.width();
-            let arrow = |key| Ok(KeyArrow::new(key, pixels_per_unit(view, middle)?, width));
+            let arrow = |key| Ok::<_, ScaleBarError>(KeyArrow::new(key, pixels_per_unit(view, middle)?, width));
             match arrows.map(arrow).transpose() {
                 Ok(Some(Some(mut arrow))) => {
                     arrow.position = legend.position.unwrap_or(arrow.position);
                     drawn = drawn.with(Annotation::KeyArrow(arrow));
                 }
                 Ok(_) => {}
-                Err(error) => notes.push(no_arrow(&error)),
+                Err(error) => notes.push(format!("the legend has no arrow: {error}")),
             }
         }
         if let Some(ScaleBarPlan { length, unit, position }) = &self.scale_bar {

@@ -45,7 +45,7 @@ impl JoinedKeys {
         Self { range, names, missing, arrow_scale: None }
     }
 
-    /// The same keys with the result of [`JoinedKeys::arrow_scale`].
+    /// Adds the result of [`JoinedKeys::arrow_scale`].
     #[must_use]
     pub fn with_arrow_scale(self, arrow_scale: Option<f64>) -> Self {
         Self { arrow_scale, ..self }

@@ -19,7 +19,7 @@ pub struct DataScene {
     pub scene: Scene,
     /// What colours mean, if a column gives them.
     pub color_key: Option<ColorKey>,
-    /// What arrows mean, if there are any.
+    /// The meaning of arrows, if there are any.
     pub arrow_key: Option<ArrowKey>,
     /// The columns of the spheres of the data, without those that were not selected or left out.
     pub columns: Vec<Column>,
