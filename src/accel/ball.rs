@@ -67,21 +67,46 @@ impl BallFrame {
         Self { corner, margin, per_length: QUANTA / size }
     }
 
+    /// The corner of the cell with the smallest coordinates, its edge length, and the margin of the scene.
+    pub(super) fn cell(&self) -> (Vec3, f32, f32) {
+        (self.corner, QUANTA / self.per_length, self.margin)
+    }
+
     /// Packs the ball of a sphere.
     pub(super) fn ball(&self, [x, y, z, radius]: [f32; 4]) -> u32 {
-        let at = (Vec3::new(x, y, z) - self.corner) * self.per_length + QUANTA;
-        // Casts round towards zero. They are much faster than calls of `round`.
-        let center = at.to_array().map(|x| (x.clamp(0.0, LARGEST) + 0.5) as u32);
-        let apart = Vec3::from_array(center.map(|x| x as f32)) - at;
-        let reach = apart.length() + (radius + self.margin) * self.per_length;
-        let squared = reach * reach + SLACK;
-        let one = 1.0_f32.to_bits();
-        // Rounded up. `squared` is at least 1, or not a number if lengths overflowed.
-        let radius = (squared.to_bits() - one).div_ceil(1 << RADIUS_SHIFT);
-        if radius > LARGEST_RADIUS || squared.is_nan() {
-            return pack([MIDDLE; 3], LARGEST_RADIUS);
+        let (center, apart) = self.packed(Vec3::new(x, y, z) - self.corner);
+        match self.squared_radius(radius, apart) {
+            Some(radius) => pack(center, radius),
+            None => pack([MIDDLE; 3], LARGEST_RADIUS),
         }
-        pack(center, radius)
+    }
+
+    /// Packs a capsule, whose ends are given from the corner. It is in the order of a ball at the first end, and the second
+    /// end. Without ends, every ray in the cell meets it.
+    pub(super) fn capsule(&self, ends: Option<[Vec3; 2]>, radius: f32) -> [u32; 2] {
+        let packed = ends.and_then(|ends| {
+            let [(first, apart), (second, also)] = ends.map(|end| self.packed(end));
+            Some([pack(first, self.squared_radius(radius, apart.max(also))?), pack(second, 0)])
+        });
+        packed.unwrap_or([pack([MIDDLE; 3], LARGEST_RADIUS), pack([MIDDLE; 3], 0)])
+    }
+
+    /// The coordinates of a place, which is given from the corner, and how far off they are.
+    fn packed(&self, from_corner: Vec3) -> ([u32; 3], f32) {
+        let at = from_corner * self.per_length + QUANTA;
+        // Casts round towards zero. They are much faster than calls of `round`.
+        let coordinates = at.to_array().map(|x| (x.clamp(0.0, LARGEST) + 0.5) as u32);
+        let apart = Vec3::from_array(coordinates.map(|x| x as f32)) - at;
+        (coordinates, apart.length())
+    }
+
+    /// The bits of the radius of a ball around what is rounded this far. `None` if it is too large.
+    fn squared_radius(&self, radius: f32, apart: f32) -> Option<u32> {
+        let reach = apart + (radius + self.margin) * self.per_length;
+        let squared = reach * reach + SLACK;
+        // Rounded up. `squared` is at least 1, or not a number if lengths overflowed.
+        let radius = (squared.to_bits() - 1.0_f32.to_bits()).div_ceil(1 << RADIUS_SHIFT);
+        (radius <= LARGEST_RADIUS && !squared.is_nan()).then_some(radius)
     }
 }
 
@@ -92,7 +117,7 @@ fn pack([x, y, z]: [u32; 3], radius: u32) -> u32 {
 /// Unpacks a ball's centre, counted from one cell's side before the corner, and the square of its radius, in quanta.
 /// Ignores the highest bit.
 #[cfg(test)]
-fn unpack(ball: u32) -> (Vec3, f32) {
+pub(super) fn unpack(ball: u32) -> (Vec3, f32) {
     let coordinate = |axis: u32| (ball >> (axis * COORDINATE_BITS) & 255) as f32;
     let squared = f32::from_bits((ball >> RADIUS_TO_FLOAT & RADIUS) + 1.0_f32.to_bits());
     (Vec3::new(coordinate(0), coordinate(1), coordinate(2)), squared)

@@ -5,12 +5,15 @@ use std::ops::Range;
 
 use glam::Vec3;
 
+use super::cone_grid::build_cone_grid;
 use super::divide::{Division, divide};
 use super::grid::Grid;
 use super::grid_build::{BuiltGrid, build_grid};
-use super::plan::AccelPlan;
+use super::plan::{AccelPlan, ConesPlan};
 use super::split::Item;
 use super::statistics::Margins;
+#[cfg(feature = "gpu")]
+use super::structure::BrickKind;
 use super::structure::{Primitive, Structure};
 #[cfg(feature = "gpu")]
 use super::tiles::TileLists;
@@ -58,19 +61,23 @@ pub struct Brick {
 }
 
 impl Brick {
-    /// The structure of a brick of cones.
+    /// The kind by which the brick is searched.
     #[cfg(feature = "gpu")]
-    pub(crate) fn structure_of_cones(&self) -> Structure {
-        match self.index {
+    pub(crate) fn kind(&self) -> BrickKind {
+        let structure = match &self.index {
+            Index::List => Structure::List,
+            Index::Grid(grid) => Structure::Grid.with_nested(grid.is_nested()),
             Index::WideTree(_) => Structure::WideTree,
+            Index::RayQuery(_) => Structure::RayQuery,
             Index::Tiles(_) => Structure::Tiles,
-            _ => Structure::List,
-        }
+        };
+        BrickKind { structure, primitive: self.primitive }
     }
 
-    /// Whether the index is a grid in which some cells have grids of their own.
+    /// Whether the spheres are in a grid in which some cells have grids of their own.
     pub(crate) fn is_nested(&self) -> bool {
-        matches!(&self.index, Index::Grid(grid) if grid.is_nested())
+        let is_of_spheres = self.primitive == Primitive::Sphere;
+        matches!(&self.index, Index::Grid(grid) if is_of_spheres && grid.is_nested())
     }
 }
 
@@ -245,18 +252,22 @@ impl Bricks<'_> {
     fn build_cones(&self, part: Range<usize>) -> Brick {
         let own = &self.cones[part.clone()];
         let first = (self.spheres.len() + part.start) as u32;
-        match &self.plan.cones {
-            Some(plan) if plan.structure == Structure::WideTree => {
-                let tree = WideTree::of_cones(own, self.plan.statistics.margin());
-                let cones = tree.ids.iter().map(|index| own[*index as usize]).collect();
-                let ids = tree.ids.iter().map(|index| first + index).collect();
-                Brick { index: Index::WideTree(tree), primitive: Primitive::Cone, cones, ids, ..Brick::default() }
+        let margin = self.plan.statistics.margin();
+        let (index, order) = match &self.plan.cones {
+            Some(ConesPlan { structure: Structure::WideTree, .. }) => {
+                let tree = WideTree::of_cones(own, margin);
+                let order = tree.ids.clone();
+                (Index::WideTree(tree), order)
             }
-            _ => {
-                let ids = (first..first + own.len() as u32).collect();
-                Brick { index: Index::List, primitive: Primitive::Cone, cones: own.to_vec(), ids, ..Brick::default() }
+            Some(ConesPlan { structure: Structure::Grid, budget, .. }) => {
+                let (grid, order) = build_cone_grid(own, margin, *budget);
+                (Index::Grid(grid), order)
             }
-        }
+            _ => (Index::List, (0..own.len() as u32).collect()),
+        };
+        let cones = order.iter().map(|index| own[*index as usize]).collect();
+        let ids = order.iter().map(|index| first + index).collect();
+        Brick { index, primitive: Primitive::Cone, cones, ids, ..Brick::default() }
     }
 }
 

@@ -2,8 +2,6 @@
 
 use glam::Vec3;
 
-use super::ball::BALLS_PER_VECTOR;
-
 /// The words of [`Grid::cells`]. The two highest bits of a word are its kind.
 pub(crate) mod word {
     /// The kind of a cell that no sphere overlaps. Bits 3 o to 3 o + 2 are the number of cells ahead, along all three
@@ -57,22 +55,13 @@ pub(super) const MAX_CELLS: usize = 1 << 24;
 /// The largest number of cells of the first level of a grid. The others are left to the second level.
 pub(super) const MAX_FIRST_LEVEL: usize = MAX_CELLS / 2;
 
-/// The cost of a step from cell to cell, as a number of list elements. Measured on lavapipe with a million random
-/// spheres, where the time hardly changes between eight and sixteen.
-pub(super) const STEP_COST: f32 = 12.0;
-
 /// Limits for the size of a grid.
-#[derive(Clone, Copy, Debug, PartialEq)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) struct GridBudget {
     /// The largest total number of elements of all lists.
     pub listed: usize,
     /// The largest number of cells, of both levels together.
     pub cells: usize,
-}
-
-/// The number of elements of a list of `len` spheres, padded to whole vectors of balls.
-pub(super) fn elements(len: usize) -> usize {
-    len.next_multiple_of(BALLS_PER_VECTOR)
 }
 
 /// A grid with one or two levels of cells, as plain data. `shaders/accel/nested_grid.wgsl` reads the same words.

@@ -4,14 +4,15 @@
 use glam::Vec3;
 
 use super::ball::BallFrame;
-use super::cells::{Cells, mean_overlapped_cells};
-use super::grid::{Grid, GridBudget, LAST, MAX_CELLS, MAX_FIRST_LEVEL, STEP_COST, elements, word};
+use super::cells::Cells;
+use super::grid::{Grid, GridBudget, LAST, MAX_CELLS, MAX_FIRST_LEVEL, word};
 use super::grid_dense::{DenseCells, corner, inner_cells, inner_lists};
 use super::grid_sort::{CHUNK, Lists, Overlaps, sort_by_cell};
+use super::listed::{Listed, elements};
 use crate::parallel::{for_each, map, map_parts, ranges, split_mut};
 
-/// The largest number of spheres whose radii are examined to choose the cell size.
-const RADII: usize = 4096;
+/// The largest number of shapes that are examined to choose the cell size.
+const SAMPLED: usize = 4096;
 
 /// A grid, its spheres in the order that its references use, and their ids.
 #[derive(Clone, Debug, PartialEq)]
@@ -32,10 +33,6 @@ pub(crate) struct BuiltGrid {
 pub(crate) fn build_grid(spheres: &[[f32; 4]], ids: &[u32], margin: f32, budget: GridBudget) -> BuiltGrid {
     let (own, (min, max)) = gather(spheres, ids, margin);
     let mut cells = first_level(&own, (min, max), budget);
-    // The size was chosen by volume, but a flat box has more cells than its volume suggests.
-    while cells.len() > 1 && word::in_whole_units(cells.len()) > budget.cells.min(MAX_CELLS) {
-        cells = coarser(&cells, max);
-    }
     let (sorted, sorted_ids) = sort_by_cell(own, ids, &cells);
     let mut overlaps = Overlaps::new(&sorted, &cells, margin);
     // The size was chosen for spheres at random positions. Spheres that are aligned with the cells may overlap more
@@ -45,8 +42,7 @@ pub(crate) fn build_grid(spheres: &[[f32; 4]], ids: &[u32], margin: f32, budget:
         overlaps = Overlaps::new(&sorted, &cells, margin);
     }
     let lists = overlaps.fill(&sorted_ids);
-    let mut grid = assemble(&cells, margin, budget, &sorted, &lists);
-    mark_empty_surroundings(&mut grid.cells, cells.counts);
+    let grid = assemble(&cells, margin, budget, &sorted, &lists);
     BuiltGrid { grid, spheres: sorted, ids: sorted_ids }
 }
 
@@ -70,16 +66,21 @@ fn gather(spheres: &[[f32; 4]], ids: &[u32], margin: f32) -> (Vec<[f32; 4]>, (Ve
     (own, (min - margin, max + margin))
 }
 
-/// Chooses the first level of cells for the given spheres.
-fn first_level(spheres: &[[f32; 4]], (min, max): (Vec3, Vec3), budget: GridBudget) -> Cells {
-    let stride = spheres.len().div_ceil(RADII).max(1);
-    let radii: Vec<f32> = spheres.iter().step_by(stride).map(|sphere| sphere[3]).collect();
-    cells_of_size(min, max, first_level_size(&radii, spheres.len(), max - min, budget))
+/// Chooses the first level of cells for the given shapes.
+pub(super) fn first_level<T: Listed>(shapes: &[T], (min, max): (Vec3, Vec3), budget: GridBudget) -> Cells {
+    let mut cells = cells_of_size(min, max, first_level_size(shapes, max - min, budget));
+    // The size was chosen by volume, but a flat box has more cells than its volume suggests.
+    while cells.len() > 1 && word::in_whole_units(cells.len()) > budget.cells.min(MAX_CELLS) {
+        cells = coarser(&cells, max);
+    }
+    cells
 }
 
-/// Chooses the cell size with the smallest expected cost of a ray, for `count` spheres, of which a sample has the given
-/// radii. A ray of length L takes about L/size steps, each with the elements of one cell's list.
-fn first_level_size(radii: &[f32], count: usize, extent: Vec3, budget: GridBudget) -> f32 {
+/// Chooses the cell size with the smallest expected cost of a ray, from a sample of the shapes. A ray of length L takes
+/// about L/size steps, each with the elements of one cell's list.
+fn first_level_size<T: Listed>(shapes: &[T], extent: Vec3, budget: GridBudget) -> f32 {
+    let stride = shapes.len().div_ceil(SAMPLED).max(1);
+    let sample: Vec<T> = shapes.iter().step_by(stride).copied().collect();
     let longest = extent.max_element();
     // Prevents a volume of zero for flat scenes.
     let sides = extent.max(Vec3::splat(longest * 1e-3));
@@ -89,12 +90,12 @@ fn first_level_size(radii: &[f32], count: usize, extent: Vec3, budget: GridBudge
     // From one cell to 1024 along the longest side, in steps of an eighth of an octave.
     for step in 0..=80_u8 {
         let size = longest / (f32::from(step) / 8.0).exp2();
-        let overlaps: f32 = radii.iter().map(|r| mean_overlapped_cells(size, *r)).sum();
-        let overlaps = f64::from(overlaps) / radii.len() as f64 * count as f64;
+        let overlaps: f32 = sample.iter().map(|shape| shape.mean_overlapped_cells(size)).sum();
+        let overlaps = f64::from(overlaps) / sample.len() as f64 * shapes.len() as f64;
         let cells = volume / f64::from(size).powi(3);
         let listed = expected_elements(overlaps, cells);
         let fits = listed <= budget.listed as f64 * 0.97 && cells <= most_cells * 0.9;
-        let cost = (f64::from(STEP_COST) + listed / cells.max(1.0)) / f64::from(size);
+        let cost = (f64::from(T::STEP_COST) + listed / cells.max(1.0)) / f64::from(size);
         if (fits || step == 0) && best.is_none_or(|(least, _)| cost < least) {
             best = Some((cost, size));
         }
@@ -113,7 +114,7 @@ fn cells_of_size(min: Vec3, max: Vec3, size: f32) -> Cells {
     Cells { min, size, counts }
 }
 
-fn coarser(cells: &Cells, max: Vec3) -> Cells {
+pub(super) fn coarser(cells: &Cells, max: Vec3) -> Cells {
     cells_of_size(cells.min, max, cells.size * 1.1)
 }
 
@@ -127,7 +128,20 @@ struct BuiltCells {
     lists: BuiltLists,
 }
 
-fn assemble(cells: &Cells, margin: f32, budget: GridBudget, sorted: &[[f32; 4]], lists: &Lists) -> Grid {
+/// Makes a grid from the lists of its first level.
+pub(super) fn assemble<T: Listed>(cells: &Cells, margin: f32, budget: GridBudget, sorted: &[T], lists: &Lists) -> Grid {
+    let mut grid = without_surroundings(cells, margin, budget, sorted, lists);
+    mark_empty_surroundings(&mut grid.cells, cells.counts);
+    grid
+}
+
+fn without_surroundings<T: Listed>(
+    cells: &Cells,
+    margin: f32,
+    budget: GridBudget,
+    sorted: &[T],
+    lists: &Lists,
+) -> Grid {
     let dense = DenseCells::of(cells, sorted, margin, (&lists.shape_indices, &lists.starts), budget);
     let is_long = |list: &[u32]| (list[1] - list[0]) as usize > LONG;
     if dense.is_none() && !lists.starts.windows(2).any(is_long) {
@@ -139,7 +153,7 @@ fn assemble(cells: &Cells, margin: f32, budget: GridBudget, sorted: &[[f32; 4]],
         let mut part = BuiltCells {
             words: Vec::with_capacity(range.len()),
             inner: Vec::new(),
-            lists: BuiltLists::with_capacity(listed),
+            lists: BuiltLists::with_capacity::<T>(listed),
         };
         let mut list = Vec::new();
         for cell in range {
@@ -174,14 +188,14 @@ fn grid(cells: &Cells, words: Vec<u32>, references: Vec<u32>, balls: Vec<u32>) -
     Grid { min, cell_size, cell_counts, cells: words, references, balls }
 }
 
-/// Lists longer than this keep only one of several equal spheres.
+/// Lists longer than this keep only one of several equal shapes.
 const LONG: usize = 32;
 
-/// Removes duplicates of spheres from a long list. The first, which has the smallest id, stays.
-fn keep_one_of_the_same(list: &mut Vec<u32>, sorted: &[[f32; 4]]) {
+/// Removes duplicates of shapes from a long list. The first, which has the smallest id, stays.
+fn keep_one_of_the_same<T: Listed>(list: &mut Vec<u32>, sorted: &[T]) {
     if list.len() > LONG {
         let mut seen = std::collections::HashSet::with_capacity(list.len());
-        list.retain(|shape_index| seen.insert(sorted[*shape_index as usize].map(f32::to_bits)));
+        list.retain(|shape_index| seen.insert(bytemuck::bytes_of(&sorted[*shape_index as usize])));
     }
 }
 
@@ -189,9 +203,10 @@ fn keep_one_of_the_same(list: &mut Vec<u32>, sorted: &[[f32; 4]]) {
 fn joined(cells: &Cells, parts: &[BuiltCells]) -> Grid {
     let first_level_len = word::in_whole_units(cells.len());
     let listed = parts.iter().map(|part| part.lists.references.len()).sum();
+    let guards = parts.iter().map(|part| part.lists.balls.len()).sum();
     let inner_len: usize = parts.iter().map(|part| part.inner.len()).sum();
     let mut all_words = vec![word::EMPTY; first_level_len + inner_len];
-    let (mut all_references, mut all_balls) = (vec![0; listed], vec![0; listed]);
+    let (mut all_references, mut all_balls) = (vec![0; listed], vec![0; guards]);
     let (mut words, mut inner) = all_words.split_at_mut(first_level_len);
     let (mut references, mut balls) = (&mut all_references[..], &mut all_balls[..]);
     let (mut list_start, mut inner_start) = (0, word::units(first_level_len));
@@ -240,43 +255,50 @@ struct BuiltLists {
 }
 
 impl BuiltLists {
-    fn with_capacity(listed: usize) -> Self {
-        Self { references: Vec::with_capacity(listed), balls: Vec::with_capacity(listed) }
+    fn with_capacity<T: Listed>(listed: usize) -> Self {
+        Self { references: Vec::with_capacity(listed), balls: Vec::with_capacity(guard_words::<T>(listed)) }
     }
 
     /// Appends the list of a cell with the given frame, and returns the cell's word.
-    fn append(&mut self, list: &[u32], spheres: &[[f32; 4]], frame: BallFrame) -> u32 {
+    fn append<T: Listed>(&mut self, list: &[u32], shapes: &[T], frame: BallFrame) -> u32 {
         if list.is_empty() {
             return word::EMPTY;
         }
         let start = self.references.len();
-        self.references.resize(start + elements(list.len()), 0);
-        self.balls.resize(self.references.len(), 0);
-        let (references, balls) = (&mut self.references[start..], &mut self.balls[start..]);
-        write_list(list, spheres, frame, references, balls);
+        self.references.resize(start + elements::<T>(list.len()), 0);
+        self.balls.resize(guard_words::<T>(self.references.len()), 0);
+        let balls = &mut self.balls[guard_words::<T>(start)..];
+        write_list(list, shapes, frame, &mut self.references[start..], balls);
         word::LIST | start as u32
     }
 }
 
-/// Writes a list that is not empty, with its balls, and pads it with its last element.
-fn write_list(list: &[u32], spheres: &[[f32; 4]], frame: BallFrame, references: &mut [u32], balls: &mut [u32]) {
+/// The number of words of the guards of a list.
+const fn guard_words<T: Listed>(elements: usize) -> usize {
+    elements * size_of::<T::Guard>() / size_of::<u32>()
+}
+
+/// Writes a list that is not empty, with its guards, and pads it with its last element.
+fn write_list<T: Listed>(list: &[u32], shapes: &[T], frame: BallFrame, references: &mut [u32], balls: &mut [u32]) {
     references[..list.len()].copy_from_slice(list);
-    for (ball, shape_index) in balls.iter_mut().zip(list) {
-        *ball = frame.ball(spheres[*shape_index as usize]);
+    references[list.len()..].fill(list[list.len() - 1]);
+    let guards: &mut [T::Guard] = bytemuck::cast_slice_mut(balls);
+    for (guard, shape_index) in guards.iter_mut().zip(list) {
+        *guard = shapes[*shape_index as usize].guard(&frame);
     }
-    for elements in [references, balls] {
-        let last = elements[list.len() - 1];
-        elements[list.len()..].fill(last);
-        if let Some(end) = elements.last_mut() {
+    let last = guards[list.len() - 1];
+    guards[list.len()..].fill(last);
+    for words in [references, balls] {
+        if let Some(end) = words.last_mut() {
             *end |= LAST;
         }
     }
 }
 
 /// Makes a grid with one level. Each list is copied only once, straight to its place.
-fn flat(cells: &Cells, lists: &Lists, spheres: &[[f32; 4]], margin: f32) -> Grid {
+fn flat<T: Listed>(cells: &Cells, lists: &Lists, shapes: &[T], margin: f32) -> Grid {
     let Lists { shape_indices, starts } = lists;
-    let elements = |cell: usize| elements((starts[cell + 1] - starts[cell]) as usize);
+    let elements = |cell: usize| elements::<T>((starts[cell + 1] - starts[cell]) as usize);
     let chunks = ranges(cells.len(), CHUNK);
     let counts = map_parts(chunks.clone(), |cells| cells.map(elements).sum::<usize>());
     let mut end = 0;
@@ -287,11 +309,11 @@ fn flat(cells: &Cells, lists: &Lists, spheres: &[[f32; 4]], margin: f32) -> Grid
             end
         })
         .collect();
-    let (mut references, mut balls) = (vec![0; end], vec![0; end]);
+    let (mut references, mut balls) = (vec![0; end], vec![0; guard_words::<T>(end)]);
     let mut words = vec![word::EMPTY; word::in_whole_units(cells.len())];
     let mut tasks = Vec::with_capacity(chunks.len());
     let targets = split_mut(&mut references, ends.iter().copied());
-    let targets = targets.into_iter().zip(split_mut(&mut balls, ends.iter().copied()));
+    let targets = targets.into_iter().zip(split_mut(&mut balls, ends.iter().map(|end| guard_words::<T>(*end))));
     let mut start = 0;
     for ((chunk, target), words) in chunks.into_iter().zip(targets).zip(words.chunks_mut(CHUNK)) {
         tasks.push((chunk, start, target, words));
@@ -308,8 +330,8 @@ fn flat(cells: &Cells, lists: &Lists, spheres: &[[f32; 4]], margin: f32) -> Grid
             let place = at..at + elements(cell);
             at = place.end;
             let frame = BallFrame::new(corner(cells, cell), cells.size, margin);
-            let balls = &mut balls[place.clone()];
-            write_list(list, spheres, frame, &mut references[place], balls);
+            let balls = &mut balls[guard_words::<T>(place.start)..guard_words::<T>(place.end)];
+            write_list(list, shapes, frame, &mut references[place], balls);
         }
     });
     grid(cells, words, references, balls)

@@ -2,13 +2,15 @@
 
 use glam::Vec3;
 
-use super::ball::BALLS_PER_VECTOR;
-use super::cells::{Cells, mean_overlapped_cells};
-use super::grid::{GridBudget, STEP_COST, elements, word};
+use super::cells::Cells;
+use super::grid::{GridBudget, word};
+use super::listed::{Listed, elements};
 use crate::parallel::{map_parts, ranges};
 
 /// The length of a list from which a grid may be worthwhile. Even the coarsest grid costs two steps.
-const CROWDED: u32 = (2.0 * STEP_COST / GAIN - STEP_COST) as u32 + 1;
+const fn crowded<T: Listed>() -> u32 {
+    (2.0 * T::STEP_COST / GAIN - T::STEP_COST) as u32 + 1
+}
 
 /// The finest level of a grid inside a cell: 2⁵ cells along an axis.
 const MAX_LEVEL: u8 = 5;
@@ -43,10 +45,10 @@ pub(super) struct DenseCells {
 }
 
 impl DenseCells {
-    /// Chooses cells from the lists of sphere indices. The longest lists come first.
-    pub(super) fn of(
+    /// Chooses cells from the lists of indices. The longest lists come first.
+    pub(super) fn of<T: Listed>(
         cells: &Cells,
-        spheres: &[[f32; 4]],
+        shapes: &[T],
         margin: f32,
         (shape_indices, starts): (&[u32], &[u32]),
         budget: GridBudget,
@@ -54,10 +56,10 @@ impl DenseCells {
         let candidates = map_parts(ranges(cells.len(), 1 << 12), |range| {
             let lists = range.map(|cell| (cell, starts[cell], starts[cell + 1]));
             lists
-                .filter(|(_, start, end)| end - start >= CROWDED)
+                .filter(|(_, start, end)| end - start >= crowded::<T>())
                 .filter_map(|(cell, start, end)| {
                     let list = &shape_indices[start as usize..end as usize];
-                    let best = best_level(cells.size, list, spheres, margin)?;
+                    let best = best_level(cells.size, list, shapes, margin)?;
                     Some(Candidate { cell: cell as u32, len: end - start, ..best })
                 })
                 .collect::<Vec<_>>()
@@ -65,17 +67,17 @@ impl DenseCells {
         let mut candidates: Vec<Candidate> = candidates.into_iter().flatten().collect();
         let mut levels = vec![0; cells.len()];
         let saved: f32 = candidates.iter().map(|candidate| candidate.saved).sum();
-        let all = cells.len() as f32 * STEP_COST + shape_indices.len() as f32;
+        let all = cells.len() as f32 * T::STEP_COST + shape_indices.len() as f32;
         if saved < WORTH_IT * all {
             return Self { levels };
         }
         candidates.sort_unstable_by_key(|candidate| (std::cmp::Reverse(candidate.len), candidate.cell));
         let mut cells_left = budget.cells.saturating_sub(word::in_whole_units(cells.len()));
-        let listed: usize = starts.windows(2).map(|ends| elements((ends[1] - ends[0]) as usize)).sum();
+        let listed: usize = starts.windows(2).map(|ends| elements::<T>((ends[1] - ends[0]) as usize)).sum();
         let mut listed_left = budget.listed.saturating_sub(listed);
         for Candidate { cell, len, level, listed, .. } in candidates {
             let inner = 1_usize << (3 * level);
-            let needed = (inner, max_listed(listed, inner).saturating_sub(len as usize));
+            let needed = (inner, max_listed::<T>(listed, inner).saturating_sub(len as usize));
             if needed.0 <= cells_left && needed.1 <= listed_left {
                 cells_left -= needed.0;
                 listed_left -= needed.1;
@@ -97,37 +99,35 @@ impl DenseCells {
 }
 
 /// The largest allowed number of list elements inside a cell, given the number expected if spheres are spread evenly.
-fn max_listed(expected: f32, cells: usize) -> usize {
+fn max_listed<T: Listed>(expected: f32, cells: usize) -> usize {
     let most = (expected * 2.0) as usize + 64;
-    most + (BALLS_PER_VECTOR - 1) * cells.min(most)
+    most + (T::PER_VECTOR - 1) * cells.min(most)
 }
 
-/// Makes the lists of the grid inside a cell. They hold indices of spheres and keep the order of the cell's list, which
+/// Makes the lists of the grid inside a cell. They hold indices of shapes and keep the order of the cell's list, which
 /// is that of ids. Returns `None` if the lists are longer than [`max_listed`] allows.
-pub(super) fn inner_lists(
+pub(super) fn inner_lists<T: Listed>(
     cells: &Cells,
     cell: usize,
     list: &[u32],
-    spheres: &[[f32; 4]],
+    shapes: &[T],
     margin: f32,
     level: u8,
 ) -> Option<Vec<Vec<u32>>> {
     let inner = inner_cells(cells, cell, level);
-    let expected = expected_listed(cells.size, inner.size, list, spheres);
-    let most = max_listed(expected, inner.len());
-    let (rows, mut lists) = (0..inner.rows(), vec![Vec::new(); inner.len()]);
+    let expected = expected_listed(cells.size, inner.size, list, shapes);
+    let most = max_listed::<T>(expected, inner.len());
+    let mut lists = vec![Vec::new(); inner.len()];
     for &shape_index in list {
-        inner.for_each_near(&spheres[shape_index as usize], margin, false, &rows, |cell| {
-            lists[cell].push(shape_index);
-        });
+        shapes[shape_index as usize].for_each_near(&inner, margin, |cell| lists[cell].push(shape_index));
     }
-    let listed: usize = lists.iter().map(|list| elements(list.len())).sum();
+    let listed: usize = lists.iter().map(|list| elements::<T>(list.len())).sum();
     (listed <= most).then_some(lists)
 }
 
 /// Finds the level at which a ray costs least, if it is cheaper than the list. The caller fills in `cell` and `len`.
-fn best_level(size: f32, list: &[u32], spheres: &[[f32; 4]], margin: f32) -> Option<Candidate> {
-    let list_cost = STEP_COST + list.len() as f32;
+fn best_level<T: Listed>(size: f32, list: &[u32], shapes: &[T], margin: f32) -> Option<Candidate> {
+    let list_cost = T::STEP_COST + list.len() as f32;
     let mut least = GAIN * list_cost;
     let mut coarser = list_cost;
     let mut best = None;
@@ -138,11 +138,11 @@ fn best_level(size: f32, list: &[u32], spheres: &[[f32; 4]], margin: f32) -> Opt
         if inner < 16.0 * margin || side * side * side > most {
             break;
         }
-        let listed = expected_listed(size, inner, list, spheres);
+        let listed = expected_listed(size, inner, list, shapes);
         if listed > most {
             break;
         }
-        let cost = side * (STEP_COST + listed / (side * side * side));
+        let cost = side * (T::STEP_COST + listed / (side * side * side));
         if cost < least {
             least = cost;
             best = Some(Candidate { cell: 0, len: 0, level, listed, saved: list_cost - cost });
@@ -156,12 +156,12 @@ fn best_level(size: f32, list: &[u32], spheres: &[[f32; 4]], margin: f32) -> Opt
     best
 }
 
-/// The expected number of elements of the lists inside a cell with edge length `size`. Each sphere counts the fraction
+/// The expected number of elements of the lists inside a cell with edge length `size`. Each shape counts the fraction
 /// of its overlapped inner cells that lie in this cell.
-fn expected_listed(size: f32, inner: f32, list: &[u32], spheres: &[[f32; 4]]) -> f32 {
+fn expected_listed<T: Listed>(size: f32, inner: f32, list: &[u32], shapes: &[T]) -> f32 {
     let of = |shape_index: &u32| {
-        let radius = spheres[*shape_index as usize][3];
-        mean_overlapped_cells(inner, radius) / mean_overlapped_cells(size, radius)
+        let shape = &shapes[*shape_index as usize];
+        shape.mean_overlapped_cells(inner) / shape.mean_overlapped_cells(size)
     };
     list.iter().map(of).sum()
 }

@@ -9,7 +9,7 @@
 use std::ops::Range;
 
 use super::cells::{CellVectors, Cells, Octet, Strides};
-use super::grid::elements;
+use super::listed::elements;
 use crate::parallel::{for_each, map_parts, ranges, split_mut};
 
 /// The number of spheres or cells that one task handles.
@@ -163,7 +163,7 @@ impl<'a> Overlaps<'a> {
 
     /// The number of elements of all lists together.
     pub(super) fn total(&self) -> u64 {
-        self.counts.iter().map(|count| elements(*count as usize) as u64).sum()
+        self.counts.iter().map(|count| elements::<[f32; 4]>(*count as usize) as u64).sum()
     }
 
     /// Fills the lists of all cells.

@@ -9,12 +9,15 @@ mod bricks;
 mod cells;
 #[cfg(test)]
 mod check_tests;
+mod cone_cells;
+mod cone_grid;
 mod divide;
 pub(crate) mod grid;
 mod grid_build;
 mod grid_dense;
 mod grid_sort;
 pub(crate) mod grid_visit;
+mod listed;
 mod plan;
 pub(crate) mod slab;
 mod split;

@@ -7,7 +7,7 @@ use super::grid::{GridBudget, MAX_FIRST_LEVEL};
 use super::statistics::{Crowd, SceneStatistics};
 use super::structure::{AccelChoice, Structure};
 #[cfg(feature = "gpu")]
-use super::structure::{BrickKind, Primitive};
+use super::structure::Primitive;
 use super::wide_tree::{WIDE_BYTES_PER_SPHERE, WideNode};
 use crate::geometry::cone::ConeInFrame;
 
@@ -49,11 +49,13 @@ impl PlannedBuffer {
 /// The structure of a scene's cones.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct ConesPlan {
-    /// A tree, or a list if that was asked for.
+    /// A grid, or a tree or a list if that was asked for.
     pub structure: Structure,
     /// The number of bricks, in addition to those of the spheres.
     pub brick_count: usize,
     pub(super) per_brick: usize,
+    /// The limits for the grid of one brick.
+    pub(super) budget: GridBudget,
 }
 
 /// The acceleration structure that will be built for a scene.
@@ -151,20 +153,36 @@ impl AccelPlan {
             (min.min(low), max.max(high))
         };
         let mut plan = self.within(cones.iter().fold(of_spheres, joined));
-        let fits = (binding_bytes.min(MAX_BINDING_BYTES) as usize / BYTES).max(1);
-        let (structure, per_brick) = match plan.choice {
-            AccelChoice::List => (Structure::List, fits.min(LIST_LEN)),
+        let binding_bytes = binding_bytes.min(MAX_BINDING_BYTES);
+        let fits = (binding_bytes as usize / BYTES).max(1);
+        let balls: Vec<[f32; 4]> = cones.iter().map(ConeInFrame::ball).collect();
+        let statistics = SceneStatistics::of(&balls);
+        let (structure, _) = decide(&statistics, Crowd::find(&balls, &statistics).as_ref(), plan.choice);
+        let (structure, per_brick) = match structure {
+            Structure::List => (Structure::List, fits.min(LIST_LEN)),
+            Structure::Grid => (Structure::Grid, (fits / 2).max(1)),
             _ => (Structure::WideTree, fits),
         };
         let (count, largest) = (cones.len() as u64, cones.len().min(per_brick) as u64);
-        let nodes = |count| if structure == Structure::WideTree { node_bytes(structure, count) } else { 0 };
+        let budget = cone_grid_budget(largest, binding_bytes);
+        let bricks = cones.len().div_ceil(per_brick) as u64;
         let planned = |name, bytes, bytes_per_binding| PlannedBuffer { name, bytes, bytes_per_binding };
-        plan.buffers.extend([
-            planned("cones", BYTES as u64 * count, BYTES as u64 * largest),
-            planned("ids of cones", 4 * count, 4 * largest),
-            planned("nodes of cones", nodes(count), nodes(largest)),
-        ]);
-        plan.cones = Some(ConesPlan { structure, brick_count: cones.len().div_ceil(per_brick), per_brick });
+        plan.buffers.push(planned("cones", BYTES as u64 * count, BYTES as u64 * largest));
+        plan.buffers.extend(match structure {
+            Structure::Grid => {
+                let (cells, listed) = (budget.cells as u64, budget.listed as u64);
+                let ids = 4 * (largest + cells + listed);
+                vec![
+                    planned("ids, cells and references of cones", ids * bricks, ids),
+                    planned("capsules", 8 * listed * bricks, 8 * listed),
+                ]
+            }
+            _ => vec![
+                planned("ids of cones", 4 * count, 4 * largest),
+                planned("nodes of cones", node_bytes(structure, count), node_bytes(structure, largest)),
+            ],
+        });
+        plan.cones = Some(ConesPlan { structure, brick_count: bricks as usize, per_brick, budget });
         plan
     }
 
@@ -177,13 +195,12 @@ impl AccelPlan {
         self
     }
 
-    /// The kinds of the bricks, whose spheres have the given structure.
+    /// The primitives of the bricks.
     #[cfg(feature = "gpu")]
-    pub(crate) fn kinds(&self, structure: Structure) -> Vec<BrickKind> {
+    pub(crate) fn primitives(&self) -> impl Iterator<Item = Primitive> {
         let has_spheres = self.statistics.count > 0 || self.cones.is_none();
-        let of_spheres = has_spheres.then_some(BrickKind { structure, primitive: Primitive::Sphere });
-        let of_cones = self.cones.map(|cones| BrickKind { structure: cones.structure, primitive: Primitive::Cone });
-        of_spheres.into_iter().chain(of_cones).collect()
+        let of_spheres = has_spheres.then_some(Primitive::Sphere);
+        of_spheres.into_iter().chain(self.cones.is_some().then_some(Primitive::Cone))
     }
 
     /// The number of bytes of all buffers.
@@ -317,6 +334,16 @@ fn grid_budget(structure: Structure, count: usize, binding_bytes: u64) -> GridBu
     // Larger cells are cheaper than a second brick.
     let most = count * 13 / 2 + (128 * count).min(1 << 18);
     let listed = most.min((binding_bytes / 4).saturating_sub(count + cells).max(count * 4));
+    let [listed, cells] = [listed, cells].map(|most| usize::try_from(most).unwrap_or(usize::MAX));
+    GridBudget { listed, cells }
+}
+
+/// The limits for a grid of this many cones.
+fn cone_grid_budget(count: u64, binding_bytes: u64) -> GridBudget {
+    let cells = (count + (64 * count).min(1 << 16)).min(binding_bytes / 16).max(8);
+    let most = 12 * count + (128 * count).min(1 << 18);
+    // A capsule has eight bytes.
+    let listed = most.min(binding_bytes / 8);
     let [listed, cells] = [listed, cells].map(|most| usize::try_from(most).unwrap_or(usize::MAX));
     GridBudget { listed, cells }
 }

@@ -155,11 +155,19 @@ impl BrickKind {
         all.filter(|kind| kind.exists())
     }
 
-    /// True if the structure can find these shapes. Cells list spheres only.
+    /// The kind as which this brick is searched among all bricks: if any grid has grids inside its cells, all grids of
+    /// these shapes are searched so.
+    #[cfg(feature = "gpu")]
+    pub(crate) fn among(self, all: &[Self]) -> Self {
+        let is_nested = all.contains(&Self { structure: Structure::NestedGrid, ..self });
+        Self { structure: self.structure.with_nested(is_nested), ..self }
+    }
+
+    /// True if the structure can find these shapes.
     const fn exists(self) -> bool {
         match self.primitive {
             Primitive::Sphere => true,
-            Primitive::Cone => matches!(self.structure, Structure::List | Structure::WideTree | Structure::Tiles),
+            Primitive::Cone => !matches!(self.structure, Structure::RayQuery),
         }
     }
 }

@@ -33,22 +33,29 @@ impl ConeInFrame {
         [self.first_radius, self.second_radius].map(|radius| radius.abs().into())
     }
 
-    /// The largest n·p of all its points p.
-    pub(crate) fn support(&self, n: DVec3) -> f64 {
+    /// The direction of the axis.
+    pub(crate) fn axis(&self) -> DVec3 {
+        let [start, end] = self.ends();
+        (end - start).normalize_or_zero()
+    }
+
+    /// The largest n·p of all its points p. The axis is that of [`Self::axis`].
+    pub(crate) fn support(&self, axis: DVec3, n: DVec3) -> f64 {
         let ([start, end], [first, second]) = (self.ends(), self.radii());
-        let axis = (end - start).normalize_or_zero();
         let across = (n - n.dot(axis) * axis).length();
         (n.dot(start) + across * first).max(n.dot(end) + across * second)
     }
 
     /// The corners of its bounding box.
     pub(crate) fn corners(&self) -> [DVec3; 2] {
-        let reach = |sign: f64| DVec3::from(DVec3::AXES.map(|axis| sign * self.support(sign * axis)));
-        [reach(-1.0), reach(1.0)]
+        let ([start, end], [first, second], axis) = (self.ends(), self.radii(), self.axis());
+        // How far discs reach along x, y and z, as a part of their radius.
+        let across = DVec3::new(axis.y.hypot(axis.z), axis.x.hypot(axis.z), axis.x.hypot(axis.y));
+        let (first, second) = (first * across, second * across);
+        [(start - first).min(end - second), (start + first).max(end + second)]
     }
 
     /// A ball around it: centre and radius.
-    #[cfg(feature = "gpu")]
     pub(crate) fn ball(&self) -> [f32; 4] {
         let ([start, end], [first, second]) = (self.ends(), self.radii());
         let center = 0.5 * (start + end);

@@ -174,7 +174,11 @@ impl<'a> Subject<'a> {
         };
         let reach = parallel::map_chunks(self.spheres, of_chunk).into_iter().fold(nothing, most);
         let of_cones = |_, chunk: &[ConeInFrame]| {
-            chunk.iter().fold(nothing, |reach, cone| most(reach, directions.map(|n| n.dot(shift) + cone.support(n))))
+            let reach_of = |cone: &ConeInFrame| {
+                let axis = cone.axis();
+                directions.map(|n| n.dot(shift) + cone.support(axis, n))
+            };
+            chunk.iter().fold(nothing, |reach, cone| most(reach, reach_of(cone)))
         };
         parallel::map_chunks(self.cones, of_cones).into_iter().fold(reach, most)
     }

@@ -17,6 +17,7 @@ use pinhole::{Appearance, Integrator, LayerSet, LinearRgb, Scene, Shading, Spher
 
 use crate::planted::{Fault, named, planted};
 use crate::scenes::{self, pinhole, view};
+use crate::support::cones::mixed;
 use crate::support::{View, spheres, spheres_of};
 use crate::{headless, planted};
 
@@ -95,8 +96,9 @@ fn certified(view: &View) -> Result<(), Failed> {
 }
 
 fn build(scene: &Scene, how: How) -> Accel {
-    let spheres = scene.spheres();
-    AccelPlan::new(spheres, how.choice, how.binding_bytes).build(spheres)
+    let (spheres, cones) = (scene.spheres(), scene.cones());
+    let plan = AccelPlan::new(spheres, how.choice, how.binding_bytes).with_cones(cones, how.binding_bytes);
+    plan.bricks(spheres).with_cones(cones).build()
 }
 
 fn record(headless: &Headless, view: &View, how: How) -> Result<Recording, Failed> {
@@ -254,6 +256,7 @@ type Make = fn() -> View;
 
 pub(crate) const VIEWS: &[(&str, Make)] = &[
     ("balls", balls),
+    ("sticks", sticks),
     ("own_colors", own_colors),
     ("parallel", parallel),
     ("lens", lens),
@@ -291,6 +294,12 @@ fn random(count: usize, seed: u64) -> Vec<Sphere> {
 /// Spheres in several colours, seen from outside, with background around them.
 pub(crate) fn balls() -> View {
     view(&random(400, 31), pinhole([3.0, 2.0, 6.0], [0.1, 0.2, 0.3], 44.0, 1.2), [96, 80])
+}
+
+/// Cones, cylinders and spheres.
+pub(crate) fn sticks() -> View {
+    let scene = mixed(100, 300, 0.2, 31);
+    View { scene, ..balls() }
 }
 
 /// Spheres with individual colours.

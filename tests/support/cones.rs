@@ -31,6 +31,24 @@ pub(crate) fn mixed(spheres: usize, cones: usize, size: f64, seed: u64) -> Scene
     Scene::from_shapes(SphereArray::F64(balls), &cones, LinearRgb::new([0.6, 0.5, 0.4]).unwrap().into()).unwrap()
 }
 
+/// Short cones crowded in a few places, needles across the whole scene and one large open cylinder around all.
+pub(crate) fn crowded(seed: u64) -> Scene {
+    let mut random = fastrand::Rng::with_seed(seed);
+    let mut cones = vec![Cone::cylinder([0.0, -1.5, 0.0], [0.0, 1.5, 0.0], 1.4).with_caps(Caps::None)];
+    let mut place = |reach: f64| [0; 3].map(|_| reach * (2.0 * random.f64() - 1.0));
+    for _ in 0..6 {
+        let middle = place(0.9);
+        for _ in 0..500 {
+            let (start, along) = (place(0.04), place(0.01));
+            let start = [0, 1, 2].map(|axis| middle[axis] + start[axis]);
+            cones.push(Cone::new(start, [0, 1, 2].map(|axis| start[axis] + along[axis]), [0.002, 0.001]));
+        }
+    }
+    cones.extend((0..100).map(|_| Cone::cylinder(place(1.0), place(1.0), 0.002)));
+    let color = LinearRgb::new([0.6, 0.5, 0.4]).unwrap();
+    Scene::from_shapes(SphereArray::F64(Vec::new()), &cones, color.into()).unwrap()
+}
+
 /// A scene of any size at any place, with what is hard: cones and cylinders that are parallel to an axis, needles and
 /// discs, some in one place or with common ends, tangent ones on a grid, tips, radii that hardly differ, and spheres.
 /// Returns also the middle and the size.

@@ -115,7 +115,7 @@ impl Headless {
         let no_bricks = UploadedBricks { space: brick_space, bricks: Vec::new(), bytes: 0 };
         let kinds = [false, true].map(|nested| brick_space.structure.with_nested(nested));
         self.alone(async |renderers: &mut Renderers| {
-            let layouts = self.layouts_of(kinds.to_vec(), None).await?;
+            let layouts = self.layouts_of(kinds.to_vec(), Vec::new()).await?;
             let mut upload = SceneUpload::new(&layouts, device, queue, &summary, brick_space, &ids).await?;
             let mut scene = SceneBuffers::new_of(no_bricks, summary, ids.exclude_by, self.shape());
             let primary = scene.primary_settings(settings)?;

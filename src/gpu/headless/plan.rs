@@ -189,7 +189,11 @@ impl RenderPlan {
     /// Returns the structure by which [`Headless::render_planned`](crate::gpu::Headless::render_planned) finds spheres.
     #[must_use]
     pub fn structure(&self) -> Structure {
-        if self.by_tiles { Structure::Tiles } else { self.accel.structure }
+        let of_shapes = match self.accel.cones {
+            Some(cones) if self.accel.statistics.count == 0 => cones.structure,
+            _ => self.accel.structure,
+        };
+        if self.by_tiles { Structure::Tiles } else { of_shapes }
     }
 
     /// Returns the reason for the choice of the structure.

@@ -36,8 +36,8 @@ impl Headless {
         let what = ReadBack::new(*layers, *is_shaded);
         let (device, queue, film) = (self.device(), self.queue(), &view.film);
         let structure = Structure::Tiles;
-        let kinds = plan.accel.kinds(structure).into_iter().map(|kind| BrickKind { structure, ..kind });
-        let kinds: Vec<BrickKind> = kinds.collect();
+        let kinds: Vec<BrickKind> =
+            plan.accel.primitives().map(|primitive| BrickKind { structure, primitive }).collect();
         let options_of = |several_bricks| {
             let options = self.options_of(&kinds, several_bricks, view.camera);
             RendererOptions { data_layers: what.has_data(), ..options }
@@ -47,7 +47,7 @@ impl Headless {
         let ids = ShapeIds::of_all(scene, false);
         let mut image = Image::new(film.width(), film.height(), *layers)?;
         self.alone(async |renderers: &mut Renderers| {
-            let layouts = self.layouts_of(vec![structure], Some(structure)).await?;
+            let layouts = self.layouts_of(vec![structure], vec![structure]).await?;
             let has_both = !scene.spheres().is_empty() && !scene.cones().is_empty();
             // Pipelines for cones always go on from the hits of spheres.
             let has_slabs = scene.len() > ONE_SLAB || !has_both && scene.cones().len() > ONE_SLAB;

@@ -23,8 +23,8 @@ use crate::scene::{Scene, SceneUpdate};
 /// Returns the options of the renderer that a picture needs for bricks of a kind, and for several bricks if `true`.
 pub(crate) type OptionsOf<'a> = dyn Fn(&[BrickKind], bool) -> RendererOptions + 'a;
 
-/// Callback with the structure of bricks that have been built, and whether there are several.
-type WhenBuilt<'a> = dyn FnMut(Structure, bool) + 'a;
+/// Callback with the kinds of bricks that have been built, and whether there are several of a kind.
+type WhenBuilt<'a> = dyn FnMut(&[BrickKind], bool) + 'a;
 
 impl RenderPlan {
     /// Returns the plans of the structures alone.
@@ -45,8 +45,8 @@ impl Headless {
         let kinds = [accel].into_iter().chain(occluders).map(Accel::structure).collect();
         let watch: &mut UploadWatch<'_> = &mut go_on;
         self.alone(async |_: &mut Renderers| {
-            let of_cones = structures.accel.bricks().iter().find(|brick| brick.primitive == Primitive::Cone);
-            let renderer = self.layouts_of(kinds, of_cones.map(Brick::structure_of_cones)).await?;
+            let of_cones = structures.accel.bricks().iter().filter(|brick| brick.primitive == Primitive::Cone);
+            let renderer = self.layouts_of(kinds, of_cones.map(|brick| brick.kind().structure).collect()).await?;
             let all = self.upload_bricks(&renderer, scene, false, accel.into(), watch, &mut |_, _| {}).await?;
             let Some(accel) = occluders else {
                 return Ok(all);
@@ -83,18 +83,18 @@ impl Headless {
         options_of: Option<&OptionsOf<'_>>,
     ) -> Result<SceneBuffers, GpuError> {
         let StructurePlans { accel, occluders } = plans;
-        let planned = [accel].into_iter().chain(occluders).map(|plan| plan.structure);
-        let structures = planned.flat_map(|structure| [structure, structure.with_nested(true)]);
-        let (structures, of_cones) = (structures.collect::<Vec<_>>(), accel.cones.map(|cones| cones.structure));
+        let both = |planned: Structure| [planned, planned.with_nested(true)];
+        let structures: Vec<Structure> =
+            [accel].into_iter().chain(occluders).flat_map(|plan| both(plan.structure)).collect();
+        let of_cones: Vec<Structure> = accel.cones.into_iter().flat_map(|cones| both(cones.structure)).collect();
         self.alone(async |renderers: &mut Renderers| {
             let renderer = self.layouts_of(structures, of_cones).await?;
             let phase = self.phase("divide");
             let bricks = accel.bricks(scene.spheres()).with_cones(scene.cones()).into();
             drop(phase);
-            let mut begin = |structure: Structure, several_bricks: bool| {
+            let mut begin = |kinds: &[BrickKind], several_bricks: bool| {
                 if let Some(options_of) = options_of {
-                    let kinds = accel.kinds(structure);
-                    self.begin_renderer(renderers, options_of(&kinds, several_bricks));
+                    self.begin_renderer(renderers, options_of(kinds, several_bricks));
                 }
             };
             let all = self.upload_bricks(&renderer, scene, false, bricks, watch, &mut begin).await?;
@@ -151,9 +151,9 @@ impl Headless {
     pub(crate) async fn layouts_of(
         &self,
         structures: Vec<Structure>,
-        of_cones: Option<Structure>,
+        cone_structures: Vec<Structure>,
     ) -> Result<Renderer, GpuError> {
-        let (cameras, cone_structures) = (Vec::new(), of_cones.into_iter().collect());
+        let cameras = Vec::new();
         let device_type = Some(self.info.device_type);
         let options =
             RendererOptions { cameras, structures, cone_structures, device_type, ..RendererOptions::default() };
@@ -189,18 +189,17 @@ impl Headless {
         };
         let (device, queue, total) = (self.device(), self.queue(), bricks.len());
         let mut upload = SceneUpload::new(renderer, device, queue, &summary, space, &ids).await?;
-        let mut structure = space.structure;
-        let mut primitives = Vec::new();
+        let mut kinds = Vec::new();
         for number in 0..total {
             let mut tell = |step| UploadProgress { step, brick: number, bricks: total }.tell(watch);
             tell(UploadStep::Building)?;
             let phase = self.phase("build");
             let Some(brick) = bricks.next() else { break };
             drop(phase);
-            structure = structure.with_nested(brick.borrow().is_nested());
-            primitives.push(brick.borrow().primitive);
+            kinds.push(brick.borrow().kind());
             if number + 1 == total {
-                built(structure, has_several(&primitives));
+                let searched: Vec<BrickKind> = kinds.iter().map(|kind| kind.among(&kinds)).collect();
+                built(&searched, has_several(&searched));
             }
             tell(UploadStep::Copying)?;
             let _phase = self.phase("upload");

@@ -227,7 +227,7 @@ mod tests {
                     color,
                     data_layers,
                     structures: Structure::ALL.to_vec(),
-                    cone_structures: vec![Structure::List, Structure::WideTree],
+                    cone_structures: Structure::ALL.to_vec(),
                     keeps_rays,
                     ..RendererOptions::default()
                 };

@@ -7,7 +7,7 @@ use std::time::Duration;
 
 use wgpu::{Device, Queue};
 
-use crate::accel::{Accel, AccelChoice, AccelPlan, Brick, BrickBounds, BrickKind, LIST_LEN, Primitive, Structure};
+use crate::accel::{Accel, AccelChoice, AccelPlan, Brick, BrickBounds, BrickKind, LIST_LEN, Structure};
 use crate::camera::View;
 use crate::gpu::device_shape::{DeviceShape, SubmissionSize};
 use crate::gpu::error::GpuError;
@@ -280,7 +280,7 @@ impl SceneBuffers {
 
     /// True if pipelines are needed that continue from the hits of other bricks of the same kind.
     pub(crate) fn has_several_bricks(&self) -> bool {
-        has_several(&self.bricks.iter().map(|brick| brick.kind.primitive).collect::<Vec<_>>())
+        has_several(&self.bricks.iter().map(|brick| brick.kind).collect::<Vec<_>>())
     }
 
     /// The boxes of the bricks, in the same order.
@@ -290,8 +290,8 @@ impl SceneBuffers {
 }
 
 /// True if there are several bricks of the kind of shapes that is traced first, which is that of the first brick.
-pub(crate) fn has_several(primitives: &[Primitive]) -> bool {
-    primitives.iter().filter(|of| Some(of) == primitives.first().as_ref()).count() > 1
+pub(crate) fn has_several(kinds: &[BrickKind]) -> bool {
+    kinds.iter().filter(|of| Some(of.primitive) == kinds.first().map(|first| first.primitive)).count() > 1
 }
 
 /// Maximum size of a storage binding in bytes on a device with these limits.

@@ -159,12 +159,7 @@ impl<'a> SceneUpload<'a> {
             Primitive::Sphere => self.ids.of(&brick.ids),
             Primitive::Cone => Cow::Borrowed(&brick.ids[..]),
         };
-        let primitive = brick.primitive;
-        let structure = match primitive {
-            Primitive::Sphere => uploaded.space.structure.with_nested(brick.is_nested()),
-            Primitive::Cone => brick.structure_of_cones(),
-        };
-        let kind = BrickKind { structure, primitive };
+        let kind = brick.kind();
         let layouts = &renderer.layouts;
         let trace_layout = layouts.brick_like(kind)?;
         let appearances = AppearanceWords::of(&self.appearance, &ids);
@@ -181,7 +176,7 @@ impl<'a> SceneUpload<'a> {
         };
         // A buffer binding must not be empty.
         let (no_shape, no_word) = ([0; LARGEST_SHAPE], [0]);
-        let shapes = match primitive {
+        let shapes = match brick.primitive {
             Primitive::Sphere => bytemuck::cast_slice(&brick.spheres),
             Primitive::Cone => bytemuck::cast_slice(&brick.cones),
         };
@@ -305,13 +300,14 @@ impl<'a> SceneUpload<'a> {
         std::mem::take(&mut self.uploaded.bricks)
     }
 
-    /// Returns the bricks. If any of them is a nested grid, all are searched as nested grids.
+    /// Returns the bricks. If any of them is a nested grid, all grids of these shapes are searched as nested grids.
     pub(crate) fn finish(self) -> Result<UploadedBricks, GpuError> {
         let UploadedBricks { mut space, mut bricks, bytes } = self.uploaded;
-        let is_nested = |brick: &BrickBuffers| matches!(brick.kind.structure, Structure::NestedGrid);
-        space.structure = space.structure.with_nested(bricks.iter().any(is_nested));
-        for brick in bricks.iter_mut().filter(|brick| brick.kind.primitive == Primitive::Sphere) {
-            brick.kind.structure = space.structure;
+        let kinds: Vec<BrickKind> = bricks.iter().map(|brick| brick.kind).collect();
+        let of_spheres = BrickKind { structure: space.structure, primitive: Primitive::Sphere };
+        space.structure = of_spheres.among(&kinds).structure;
+        for brick in &mut bricks {
+            brick.kind = brick.kind.among(&kinds);
             self.renderer.layouts.brick_of(brick.kind)?;
         }
         Ok(UploadedBricks { space, bricks, bytes })

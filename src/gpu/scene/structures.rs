@@ -41,7 +41,8 @@ impl RenderPlan {
         if self.by_tiles {
             return Some(self.accel.structure.choice());
         }
-        let planned = self.occluders.iter().chain([&self.accel]).map(|plan| plan.structure);
+        let of_spheres = self.occluders.iter().chain([&self.accel]).map(|plan| plan.structure);
+        let planned = of_spheres.chain(self.accel.cones.map(|cones| cones.structure));
         let others: Vec<AccelChoice> = planned.filter_map(Structure::instead).collect();
         // A tree may suffice for both structures, so it is tried before a list.
         [AccelChoice::Tree, AccelChoice::List].into_iter().find(|other| others.contains(other))

@@ -30,7 +30,7 @@ macro_rules! files {
 
 /// The paths of all files relative to `shaders`, and their texts.
 const FILES: &[(&str, &str)] = files! {
-    "accel": "ball_grid" "ball_list" "balls" "brick" "cell_words" "excluded" "grid_ray" "leaf" "list"
+    "accel": "ball_grid" "ball_list" "balls" "brick" "capsules" "cell_words" "excluded" "grid_ray" "leaf" "list"
         "nested_ball_cell" "nested_grid" "nearest_hit" "ray_query" "slab" "spend" "tile_lists" "wide_group" "wide_node" "wide_tree";
     "camera": "camera_ray" "entry" "film" "film_sample" "filter" "fisheye" "orthographic" "panorama" "pinhole"
         "ray" "thin-lens";

@@ -33,27 +33,29 @@ pub(crate) fn probe_kernel() -> Kernel {
 
 fn entered_kernel(
     camera: CameraKind,
-    BrickKind { structure, primitive }: BrickKind,
+    kind: BrickKind,
     brick_pass: BrickPass,
     entry: &'static str,
 ) -> Kernel {
-    let shape = ("$shape", primitive_part(primitive));
-    let kernel = match structure {
+    let shape = ("$shape", primitive_part(kind.primitive));
+    let kernel = match kind.structure {
         Structure::Tiles => Kernel::new("trace_tile", &[shape, ("$entry", entry)]),
-        _ => Kernel::new("trace", &[shape, structure_choice(structure), ("$entry", entry)]),
+        _ => Kernel::new("trace", &[shape, structure_choice(kind), ("$entry", entry)]),
     };
     kernel.with([camera_constant(camera), brick_pass.constant()])
 }
 
-/// The choice of the parts that traverse a structure.
-pub(crate) fn structure_choice(structure: Structure) -> (&'static str, &'static str) {
-    let list = match structure {
+/// The choice of the parts that traverse a structure of these shapes.
+pub(crate) fn structure_choice(kind: BrickKind) -> (&'static str, &'static str) {
+    let list = match (kind.structure, kind.primitive) {
         // Only camera rays are found by tiles.
-        Structure::List | Structure::Tiles => "list",
-        Structure::RayQuery => "ray-query",
-        Structure::WideTree => "wide-tree",
-        Structure::Grid => "grid",
-        Structure::NestedGrid => "nested-grid",
+        (Structure::List | Structure::Tiles, _) => "list",
+        (Structure::RayQuery, _) => "ray-query",
+        (Structure::WideTree, _) => "wide-tree",
+        (Structure::Grid, Primitive::Sphere) => "grid",
+        (Structure::NestedGrid, Primitive::Sphere) => "nested-grid",
+        (Structure::Grid, Primitive::Cone) => "cone-grid",
+        (Structure::NestedGrid, Primitive::Cone) => "nested-cone-grid",
     };
     ("$structure", list)
 }

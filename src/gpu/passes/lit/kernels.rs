@@ -2,7 +2,7 @@
 
 use std::collections::HashSet;
 
-use crate::accel::Structure;
+use crate::accel::{BrickKind, Primitive, Structure};
 use crate::camera::CameraKind;
 use crate::gpu::scene::scene_summary::ExcludeBy;
 use crate::gpu::shader::BrickPass::{First, Later};
@@ -216,7 +216,7 @@ impl LitKey {
             _ => "plain-sky",
         };
         let is_pass = |pass| u32::from(self.one_pass == Some(pass));
-        Kernel::new(entry_point, &[structure_choice(structure), ("$sky", sky)])
+        Kernel::new(entry_point, &[structure_choice(BrickKind { structure, primitive: Primitive::Sphere }), ("$sky", sky)])
             .with(self.mode.constants())
             .with([camera_constant(self.camera), exclude_by.constant()])
             .with([("HAS_GROUND", is_pass(OnePass::Ground))])

@@ -6,7 +6,7 @@ use std::num::NonZeroU64;
 use bytemuck::{Pod, Zeroable};
 use wgpu::{BindGroupLayout, BindingType, ComputePipeline, Device};
 
-use crate::accel::Structure;
+use crate::accel::{BrickKind, Primitive, Structure};
 use crate::camera::CameraKind;
 use crate::gpu::checks::Checks;
 use crate::gpu::edit::Edits;
@@ -65,7 +65,7 @@ pub(crate) struct LivePasses {
 
 /// The kernel that traces the rays of a frame.
 fn live_kernel(key: LiveKey) -> Kernel {
-    Kernel::new("live", &[structure_choice(key.structure)]).with([
+    Kernel::new("live", &[structure_choice(BrickKind { structure: key.structure, primitive: Primitive::Sphere })]).with([
         camera_constant(key.camera),
         key.exclude_by.constant(),
         ("HAS_GROUND", u32::from(key.has_ground)),
