@@ -4,7 +4,7 @@
 //! # Why no cone is lost
 //! A cone is left out of a cell only if a plane separates them by more than the margin, or if the cell is inside by more
 //! than the margin. Planes are tried whose normals are along the cell's sides, across one of them and the axis
-//! (Gottschalk et al., "OBBTree", 1996), and along the line from the cone to the middle of the cell. All numbers are
+//! (Gottschalk, Lin and Manocha, 1996, for boxes), and along the line from the cone to the middle of the cell. All numbers are
 //! f64. So the cells are those near the cone and a few others at its rims.
 //!
 //! A point of the cone that is within the margin of the cell is no farther than the radius R from its foot on the axis,
@@ -231,8 +231,7 @@ mod tests {
             for _ in 0..500 {
                 let axis = DVec3::from([0; 3].map(|_| rng.f64() - 0.5)).normalize_or(DVec3::X);
                 let middle = DVec3::from([0; 3].map(|_| 0.3 + 0.4 * rng.f64()));
-                let [start, end] =
-                    [-0.5, 0.5].map(|part| (middle + part * length * axis).as_vec3().to_array());
+                let [start, end] = [-0.5, 0.5].map(|part| (middle + part * length * axis).as_vec3().to_array());
                 let radius = radius as f32;
                 let cone = ConeInFrame { start, first_radius: radius, end, second_radius: radius };
                 cone.for_each_near(&cells, 0.0, |_| found += 1.0);

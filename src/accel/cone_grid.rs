@@ -1,4 +1,5 @@
-//! Building grids of cones. There are fewer of them than of spheres, so this is simpler than `grid_build.rs`.
+//! Planning the structures of cones, and building grids of them. There are fewer of them than of spheres, so this is
+//! simpler than `grid_build.rs`.
 
 use glam::Vec3;
 
@@ -7,18 +8,91 @@ use super::grid::{Grid, GridBudget};
 use super::grid_build::{assemble, coarser, first_level};
 use super::grid_sort::{CHUNK, Lists};
 use super::listed::{Listed, elements};
+use super::plan::{AccelPlan, ConesPlan, LIST_LEN, MAX_BINDING_BYTES, PlannedBuffer, decide, node_bytes};
+use super::statistics::{Crowd, SceneStatistics};
+use super::structure::Structure;
 use crate::geometry::cone::ConeInFrame;
-use crate::parallel::{map_parts, ranges};
+use crate::parallel::{map_chunks, map_parts, ranges};
+
+impl AccelPlan {
+    /// The plan with the cones of the scene, for a device whose bindings hold up to `binding_bytes`.
+    #[must_use]
+    pub fn with_cones(self, cones: &[ConeInFrame], binding_bytes: u64) -> Self {
+        const BYTES: usize = size_of::<ConeInFrame>();
+        if cones.is_empty() {
+            return self;
+        }
+        let (mut min, mut max) = box_of(cones);
+        if self.statistics.count > 0 {
+            (min, max) = (min.min(self.statistics.min), max.max(self.statistics.max));
+        }
+        let mut plan = self.within((min, max));
+        let binding_bytes = binding_bytes.min(MAX_BINDING_BYTES);
+        let fits = (binding_bytes as usize / BYTES).max(1);
+        let balls: Vec<[f32; 4]> = cones.iter().map(ConeInFrame::ball).collect();
+        // Middles that are close together say little: cones with one middle leave it in all directions.
+        let statistics = SceneStatistics { densest: 0.0, ..SceneStatistics::of(&balls) };
+        let crowd = Crowd::find(&balls, &statistics);
+        let (structure, reason) = decide(&statistics, crowd.as_ref(), plan.choice, "cones and cylinders");
+        if plan.statistics.count == 0 {
+            plan.reason = reason;
+        }
+        let (structure, per_brick) = match structure {
+            Structure::List => (Structure::List, fits.min(LIST_LEN)),
+            Structure::Grid => (Structure::Grid, (fits / 2).max(1)),
+            _ => (Structure::WideTree, fits),
+        };
+        let (count, largest) = (cones.len() as u64, cones.len().min(per_brick) as u64);
+        let budget = cone_grid_budget(largest, binding_bytes);
+        let bricks = cones.len().div_ceil(per_brick) as u64;
+        let planned = |name, bytes, bytes_per_binding| PlannedBuffer { name, bytes, bytes_per_binding };
+        plan.buffers.push(planned("cones", BYTES as u64 * count, BYTES as u64 * largest));
+        plan.buffers.extend(match structure {
+            Structure::Grid => {
+                let (cells, listed) = (budget.cells as u64, budget.listed as u64);
+                let ids = 4 * (largest + cells + listed);
+                vec![
+                    planned("ids, cells and references of cones", ids * bricks, ids),
+                    planned("capsules", 8 * listed * bricks, 8 * listed),
+                ]
+            }
+            _ => vec![
+                planned("ids of cones", 4 * count, 4 * largest),
+                planned("nodes of cones", node_bytes(structure, count), node_bytes(structure, largest)),
+            ],
+        });
+        plan.cones = Some(ConesPlan { structure, brick_count: bricks as usize, per_brick: largest as usize, budget });
+        plan
+    }
+}
+
+/// The smallest and the largest coordinates of cones.
+fn box_of(cones: &[ConeInFrame]) -> (Vec3, Vec3) {
+    let parts = map_chunks(cones, |_, cones| {
+        cones.iter().fold((Vec3::MAX, Vec3::MIN), |(min, max), cone| {
+            let [low, high] = cone.corners().map(|corner| corner.as_vec3());
+            (min.min(low), max.max(high))
+        })
+    });
+    let joined = |a: (Vec3, Vec3), b: (Vec3, Vec3)| (a.0.min(b.0), a.1.max(b.1));
+    parts.into_iter().fold((Vec3::MAX, Vec3::MIN), joined)
+}
+
+/// The limits for a grid of this many cones.
+fn cone_grid_budget(count: u64, binding_bytes: u64) -> GridBudget {
+    let cells = (count + (64 * count).min(1 << 16)).min(binding_bytes / 16).max(8);
+    let most = 12 * count + (128 * count).min(1 << 18);
+    // A capsule has eight bytes.
+    let listed = most.min(binding_bytes / 8);
+    let [listed, cells] = [listed, cells].map(|most| usize::try_from(most).unwrap_or(usize::MAX));
+    GridBudget { listed, cells }
+}
 
 /// Builds a grid of cones. Returns it with the order of its cones, as indices of the given ones.
 ///
 /// A cone is listed in the cells that come within `margin` of its surface.
 pub(super) fn build_cone_grid(cones: &[ConeInFrame], margin: f32, budget: GridBudget) -> (Grid, Vec<u32>) {
-    let joined = |(min, max): (Vec3, Vec3), cone: &ConeInFrame| {
-        let [low, high] = cone.corners().map(|corner| corner.as_vec3());
-        (min.min(low), max.max(high))
-    };
-    let (min, max) = cones.iter().fold((Vec3::MAX, Vec3::MIN), joined);
+    let (min, max) = box_of(cones);
     let (min, max) = (min - margin, max + margin);
     let mut cells = first_level(cones, (min, max), budget);
     let mut overlaps = overlaps(cones, &cells, margin);

@@ -5,11 +5,10 @@ use glam::Vec3;
 use super::divide::largest_part;
 use super::grid::{GridBudget, MAX_FIRST_LEVEL};
 use super::statistics::{Crowd, SceneStatistics};
-use super::structure::{AccelChoice, Structure};
 #[cfg(feature = "gpu")]
 use super::structure::Primitive;
+use super::structure::{AccelChoice, Structure};
 use super::wide_tree::{WIDE_BYTES_PER_SPHERE, WideNode};
-use crate::geometry::cone::ConeInFrame;
 
 /// Up to this number of spheres, no structure is worth its cost.
 const FEW: usize = 32;
@@ -22,7 +21,7 @@ const MAX_IN_A_CUBE: f32 = 256.0;
 pub(crate) const LIST_LEN: usize = 3 << 14;
 
 /// The largest binding on most devices. Larger lists could not be indexed with 30 bits.
-const MAX_BINDING_BYTES: u64 = i32::MAX as u64;
+pub(super) const MAX_BINDING_BYTES: u64 = i32::MAX as u64;
 
 /// The size of a box for ray queries, in bytes.
 const BOX_BYTES: usize = size_of::<[f32; 6]>();
@@ -88,7 +87,7 @@ impl AccelPlan {
     /// `binding_bytes`.
     #[must_use]
     pub fn new(spheres: &[[f32; 4]], choice: AccelChoice, binding_bytes: u64) -> Self {
-        Self::decided(spheres, choice, binding_bytes, |statistics, crowd| decide(statistics, crowd, choice))
+        Self::decided(spheres, choice, binding_bytes, |statistics, crowd| decide(statistics, crowd, choice, "spheres"))
     }
 
     /// Makes a plan for the given structure, whatever it costs, for example to measure it. A grid may be built with two
@@ -137,55 +136,6 @@ impl AccelPlan {
         Self { box_margin, ..self }
     }
 
-    /// The plan with the cones of the scene, for a device whose bindings hold up to `binding_bytes`.
-    #[must_use]
-    pub fn with_cones(self, cones: &[ConeInFrame], binding_bytes: u64) -> Self {
-        const BYTES: usize = size_of::<ConeInFrame>();
-        if cones.is_empty() {
-            return self;
-        }
-        let of_spheres = match self.statistics.count {
-            0 => (Vec3::MAX, Vec3::MIN),
-            _ => (self.statistics.min, self.statistics.max),
-        };
-        let joined = |(min, max): (Vec3, Vec3), cone: &ConeInFrame| {
-            let [low, high] = cone.corners().map(|corner| corner.as_vec3());
-            (min.min(low), max.max(high))
-        };
-        let mut plan = self.within(cones.iter().fold(of_spheres, joined));
-        let binding_bytes = binding_bytes.min(MAX_BINDING_BYTES);
-        let fits = (binding_bytes as usize / BYTES).max(1);
-        let balls: Vec<[f32; 4]> = cones.iter().map(ConeInFrame::ball).collect();
-        let statistics = SceneStatistics::of(&balls);
-        let (structure, _) = decide(&statistics, Crowd::find(&balls, &statistics).as_ref(), plan.choice);
-        let (structure, per_brick) = match structure {
-            Structure::List => (Structure::List, fits.min(LIST_LEN)),
-            Structure::Grid => (Structure::Grid, (fits / 2).max(1)),
-            _ => (Structure::WideTree, fits),
-        };
-        let (count, largest) = (cones.len() as u64, cones.len().min(per_brick) as u64);
-        let budget = cone_grid_budget(largest, binding_bytes);
-        let bricks = cones.len().div_ceil(per_brick) as u64;
-        let planned = |name, bytes, bytes_per_binding| PlannedBuffer { name, bytes, bytes_per_binding };
-        plan.buffers.push(planned("cones", BYTES as u64 * count, BYTES as u64 * largest));
-        plan.buffers.extend(match structure {
-            Structure::Grid => {
-                let (cells, listed) = (budget.cells as u64, budget.listed as u64);
-                let ids = 4 * (largest + cells + listed);
-                vec![
-                    planned("ids, cells and references of cones", ids * bricks, ids),
-                    planned("capsules", 8 * listed * bricks, 8 * listed),
-                ]
-            }
-            _ => vec![
-                planned("ids of cones", 4 * count, 4 * largest),
-                planned("nodes of cones", node_bytes(structure, count), node_bytes(structure, largest)),
-            ],
-        });
-        plan.cones = Some(ConesPlan { structure, brick_count: bricks as usize, per_brick, budget });
-        plan
-    }
-
     /// The plan for spheres that are a part of a scene with the given box, in the scene's frame. Rays start in
     /// that box, and the margin is that of the whole scene.
     #[must_use]
@@ -193,6 +143,14 @@ impl AccelPlan {
         // The margin of a crowd is for rays that start in the box of these spheres.
         (self.statistics.min, self.statistics.max, self.crowd) = (min, max, None);
         self
+    }
+
+    /// The number of bricks of all shapes.
+    #[cfg(feature = "gpu")]
+    pub(crate) fn count_bricks(&self) -> usize {
+        let primitives: Vec<Primitive> = self.primitives().collect();
+        let of_cones = self.cones.map_or(0, |cones| cones.brick_count);
+        of_cones + if primitives.contains(&Primitive::Sphere) { self.brick_count } else { 0 }
     }
 
     /// The primitives of the bricks.
@@ -250,7 +208,7 @@ impl AccelPlan {
     /// The number of bytes that building a brick takes, in addition to the brick.
     fn building_bytes(&self) -> u64 {
         let per_brick = self.per_brick();
-        match self.structure {
+        let of_spheres = match self.structure {
             Structure::List | Structure::Tiles => 0,
             Structure::RayQuery => per_brick * 44,
             // The spheres of a brick, their ids twice, and the builder's data for each sphere. Growing vectors leave
@@ -258,7 +216,16 @@ impl AccelPlan {
             Structure::WideTree => per_brick * 72,
             // Sorted spheres with their ids, lists of indices twice, and lists of balls.
             Structure::Grid | Structure::NestedGrid => per_brick * 24 + 12 * self.budget.listed as u64,
-        }
+        };
+        let of_cones = self.cones.map_or(0, |cones| match cones.structure {
+            // Sorted cones with their order, the cells that they overlap in growing vectors, lists and capsules.
+            Structure::Grid => {
+                let GridBudget { listed, cells } = cones.budget;
+                64 * cones.per_brick as u64 + 24 * listed as u64 + 8 * cells as u64
+            }
+            _ => 72 * cones.per_brick as u64,
+        });
+        of_spheres.max(of_cones)
     }
 
     fn list_buffers(&self) -> Vec<PlannedBuffer> {
@@ -290,35 +257,40 @@ impl AccelPlan {
     }
 }
 
-/// Decides which structure to build, and says why.
-fn decide(statistics: &SceneStatistics, crowd: Option<&Crowd>, choice: AccelChoice) -> (Structure, String) {
+/// Decides which structure to build for shapes with this name, and says why.
+pub(super) fn decide(
+    statistics: &SceneStatistics,
+    crowd: Option<&Crowd>,
+    choice: AccelChoice,
+    shapes: &str,
+) -> (Structure, String) {
     let SceneStatistics { count, densest, .. } = *statistics;
     let asked = |structure| (structure, "asked for".to_owned());
     match choice {
-        _ if count == 0 => (Structure::List, "there are no spheres".to_owned()),
+        _ if count == 0 => (Structure::List, format!("there are no {shapes}")),
         AccelChoice::List => asked(Structure::List),
         AccelChoice::Grid => asked(Structure::Grid),
         AccelChoice::Tree => asked(Structure::WideTree),
         AccelChoice::RayQuery => asked(Structure::RayQuery),
         AccelChoice::Auto | AccelChoice::Tiles if count <= FEW => {
-            (Structure::List, format!("for up to {FEW} spheres, no structure is worth its cost"))
+            (Structure::List, format!("for up to {FEW} {shapes}, no structure is worth its cost"))
         }
         AccelChoice::Auto | AccelChoice::Tiles => match crowd.filter(|crowd| crowd.is_lost_in_margin(statistics)) {
             Some(Crowd { outliers, .. }) => (
                 Structure::WideTree,
                 format!(
-                    "{outliers} of {count} spheres lie far away from the others, which have a margin of their own in a \
+                    "{outliers} of {count} {shapes} lie far away from the others, which have a margin of their own in a \
                      tree"
                 ),
             ),
             None if densest > MAX_IN_A_CUBE => (
                 Structure::WideTree,
                 format!(
-                    "about {densest:.0} spheres lie in a cube of 1/4096 of the scene's side, too close together for two \
+                    "about {densest:.0} {shapes} lie in a cube of 1/4096 of the scene's side, too close together for two \
                      levels of cells"
                 ),
             ),
-            None => (Structure::Grid, format!("{count} spheres")),
+            None => (Structure::Grid, format!("{count} {shapes}")),
         },
     }
 }
@@ -338,18 +310,8 @@ fn grid_budget(structure: Structure, count: usize, binding_bytes: u64) -> GridBu
     GridBudget { listed, cells }
 }
 
-/// The limits for a grid of this many cones.
-fn cone_grid_budget(count: u64, binding_bytes: u64) -> GridBudget {
-    let cells = (count + (64 * count).min(1 << 16)).min(binding_bytes / 16).max(8);
-    let most = 12 * count + (128 * count).min(1 << 18);
-    // A capsule has eight bytes.
-    let listed = most.min(binding_bytes / 8);
-    let [listed, cells] = [listed, cells].map(|most| usize::try_from(most).unwrap_or(usize::MAX));
-    GridBudget { listed, cells }
-}
-
 /// The largest number of bytes of a tree's nodes, including the root.
-fn node_bytes(structure: Structure, count: u64) -> u64 {
+pub(super) fn node_bytes(structure: Structure, count: u64) -> u64 {
     let (per_sphere, root) = match structure {
         Structure::WideTree => (WIDE_BYTES_PER_SPHERE, size_of::<WideNode>()),
         Structure::RayQuery => (BOX_BYTES, 0),

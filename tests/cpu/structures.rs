@@ -1,8 +1,9 @@
 //! Every structure, in one brick and in several. Each sphere is in one brick, and no buffer exceeds the plan.
 
-use pinhole::accel::{Accel, AccelChoice, AccelPlan, Brick, Index, Structure};
+use pinhole::accel::{Accel, AccelChoice, AccelPlan, Brick, Index, Primitive, Structure};
 use pinhole::glam::Vec3;
 
+use crate::support::cones::{crowded, mixed};
 use crate::support::spheres::{self, Spheres, crowd_and_outliers};
 
 /// The largest binding of a large device.
@@ -48,6 +49,20 @@ fn check_bindings(plan: &AccelPlan, binding_bytes: u64) {
 /// The bytes of each buffer of a brick, by the names in plans.
 fn buffers(brick: &Brick) -> Vec<(&'static str, u64)> {
     let ids = size_of_val(&brick.ids[..]) as u64;
+    if brick.primitive == Primitive::Cone {
+        let cones = ("cones", size_of_val(&brick.cones[..]) as u64);
+        return match &brick.index {
+            Index::Grid(grid) => {
+                let words = size_of_val(&grid.cells[..]) + size_of_val(&grid.references[..]);
+                let capsules = size_of_val(&grid.balls[..]) as u64;
+                vec![cones, ("ids, cells and references of cones", ids + words as u64), ("capsules", capsules)]
+            }
+            Index::WideTree(tree) => {
+                vec![cones, ("ids of cones", ids), ("nodes of cones", size_of_val(&tree.nodes[..]) as u64)]
+            }
+            _ => vec![cones, ("ids of cones", ids)],
+        };
+    }
     let mut buffers = vec![("spheres", size_of_val(&brick.spheres[..]) as u64)];
     if let Index::Grid(grid) = &brick.index {
         let words = size_of_val(&grid.cells[..]) + size_of_val(&grid.references[..]);
@@ -119,6 +134,38 @@ fn check_bricks(name: &str, accel: &Accel, spheres: &Spheres, margin: f32) {
                     f64::from(*low) <= center - reach && f64::from(*high) >= center + reach
                 };
                 assert!(holds(x0, x, x1) && holds(y0, y, y1) && holds(z0, z, z1), "{name}");
+            }
+        }
+    }
+}
+
+/// Cones of one brick and of several, with every structure: no buffer exceeds the plan, and each is in one brick.
+#[test]
+fn cones_are_as_planned() {
+    for scene in [mixed(50, 3000, 0.1, 2), mixed(0, 700, 1.0, 3), crowded(4), mixed(0, 1, 0.5, 5)] {
+        for choice in [AccelChoice::Auto, AccelChoice::Grid, AccelChoice::Tree, AccelChoice::List] {
+            for binding_bytes in [ROOMY, 1 << 19] {
+                let plan = AccelPlan::new(scene.spheres(), choice, binding_bytes);
+                let plan = plan.with_cones(scene.cones(), binding_bytes);
+                check_bindings(&plan, binding_bytes);
+                let accel = plan.bricks(scene.spheres()).with_cones(scene.cones()).build();
+                let name = format!("{} cones, {choice}, {binding_bytes} bytes", scene.cones().len());
+                let bricks = accel.bricks().iter();
+                let of_cones: Vec<&Brick> = bricks.filter(|brick| brick.primitive == Primitive::Cone).collect();
+                assert_eq!(of_cones.len(), plan.cones.map_or(0, |cones| cones.brick_count), "{name}");
+                let mut sums = std::collections::BTreeMap::new();
+                let mut ids: Vec<u32> = of_cones.iter().flat_map(|brick| &brick.ids).copied().collect();
+                ids.sort_unstable();
+                let all = scene.spheres().len() as u32..scene.shape_count() as u32;
+                assert!(ids.into_iter().eq(all), "{name}");
+                for brick in of_cones {
+                    for (buffer, bytes) in buffers(brick) {
+                        let planned = plan.buffers.iter().find(|planned| planned.name == buffer).unwrap();
+                        let sum = sums.entry(buffer).or_insert(0);
+                        *sum += bytes;
+                        assert!(bytes <= planned.bytes_per_binding && *sum <= planned.bytes, "{name}: {buffer}");
+                    }
+                }
             }
         }
     }

@@ -256,8 +256,8 @@ impl Work {
         let renderer = match before {
             Some((.., renderer)) => renderer,
             None => {
-                let (cameras, cone_structures) = (vec![camera], has_cones.then_some(Structure::WideTree));
-                let cone_structures = cone_structures.into_iter().collect();
+                let cameras = vec![camera];
+                let cone_structures = if has_cones { Structure::ALL.to_vec() } else { Vec::new() };
                 let options =
                     RendererOptions { data_layers: true, cameras, cone_structures, ..RendererOptions::default() };
                 Arc::new(LitRenderer::new(Renderer::new(device, &options).wait()?))

@@ -15,7 +15,7 @@ use pinhole_data::load::Format;
     other of grid and tree. Rays go through the centers of all pixels. \
     Times are medians. Tiles are those of a single picture: their lists are made for each, and count as building. \
     The peak of the memory is that of the whole process so far. Exit codes are those of `render`.\n\n\
-    JSON: `version`, `adapter`, `reps`, `scenes` (name, spheres, width, height, load_seconds, runs, note); a \
+    JSON: `version`, `adapter`, `reps`, `scenes` (name, spheres, cones, width, height, load_seconds, runs, note); a \
     run has choice, structure, reason, build_seconds, upload_seconds, first_render_seconds, trace_wall, \
     trace_device (each median_seconds, best_seconds), clock, rays, rays_per_second, \
     submissions, longest_submission_seconds (null for tiles), device_bytes, device_bytes_per_sphere, \

@@ -158,7 +158,7 @@ fn measure(
         submissions: times.iter().map(|time| time.submissions).max().unwrap_or(0),
         longest_submission_seconds: longest.as_ref().map(Duration::as_secs_f64),
         device_bytes,
-        device_bytes_per_sphere: (!spheres.is_empty()).then(|| device_bytes as f64 / spheres.len() as f64),
+        device_bytes_per_sphere: (!spheres.is_empty()).then(|| device_bytes as f64 / spheres.shape_count() as f64),
         peak_memory_bytes: memory::peak_bytes(),
     })
 }

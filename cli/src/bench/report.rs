@@ -33,6 +33,7 @@ pub(crate) struct BenchReport {
 pub(crate) struct SceneReport {
     name: String,
     spheres: usize,
+    cones: usize,
     width: u32,
     height: u32,
     load_seconds: f64,
@@ -104,6 +105,7 @@ impl SceneReport {
         Self {
             name: name.clone(),
             spheres: scene.len(),
+            cones: scene.cones().len(),
             width: film.width(),
             height: film.height(),
             load_seconds: load.as_secs_f64(),
@@ -113,8 +115,10 @@ impl SceneReport {
     }
 
     pub(crate) fn readable(&self) -> String {
-        let Self { name, spheres, width, height, load_seconds, .. } = self;
-        let mut text = format!("\n{name}: {spheres} spheres, {width}x{height}, loaded in {load_seconds:.2} s\n");
+        let Self { name, spheres, cones, width, height, load_seconds, .. } = self;
+        let of_cones = if *cones > 0 { format!("{cones} cones and cylinders, ") } else { String::new() };
+        let mut text =
+            format!("\n{name}: {spheres} spheres, {of_cones}{width}x{height}, loaded in {load_seconds:.2} s\n");
         let rows: Vec<_> = self.runs.iter().map(RunReport::row).collect();
         text += &table(
             [
@@ -127,7 +131,7 @@ impl SceneReport {
                 "device ms",
                 "best",
                 "Mrays/s",
-                "B/sphere",
+                "B/shape",
                 "peak",
                 "submissions",
                 "longest ms",

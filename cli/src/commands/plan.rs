@@ -24,7 +24,7 @@ use pinhole::image::{Layer, LayerSet};
 #[derive(Debug, Args)]
 #[command(after_help = "Nothing is allocated on the device. Exit codes: 0 the render fits; 1 it does not, \
     and the error is that of `render`; 2 wrong usage.\n\n\
-    JSON: `version`, `scene` (spheres, min, max, radius_min, radius_mean, radius_max), `structure` (name, \
+    JSON: `version`, `scene` (spheres, cones, min, max, radius_min, radius_mean, radius_max), `structure` (name, \
     reason, bricks), `picture` (width, height, tile_width, tile_height, tiles, submissions_at_least), \
     `buffers` (name, bytes, bytes_per_binding, bindings), `device_bytes`, `device_bytes_per_sphere`, `host_bytes`, \
     `host_peak`, `host_bytes_available`, `adapter` (name, backend, device_type, driver, driver_info), `limits`, `fits`, \
@@ -68,6 +68,7 @@ struct Report {
 #[derive(Serialize)]
 struct SceneReport {
     spheres: usize,
+    cones: usize,
     /// Smallest coordinates of the scene in world space.
     min: Option<[f64; 3]>,
     max: Option<[f64; 3]>,
@@ -168,6 +169,7 @@ impl Report {
             version: env!("CARGO_PKG_VERSION"),
             scene: SceneReport {
                 spheres: statistics.count,
+                cones: input.scene.cones().len(),
                 min: bounds.map(|bounds| bounds.min().to_array()),
                 max: bounds.map(|bounds| bounds.max().to_array()),
                 radius_min: statistics.radius_min,
@@ -207,10 +209,15 @@ impl Report {
     fn readable(&self) -> String {
         let Self { scene, structure, picture, limits, .. } = self;
         let mut text = format!("spheres: {}\n", scene.spheres);
+        if scene.cones > 0 {
+            text += &format!("cones and cylinders: {}\n", scene.cones);
+        }
         if let (Some(min), Some(max)) = (scene.min, scene.max) {
             text += &format!("bounds: {min:?} to {max:?}\n");
             let SceneReport { radius_min, radius_mean, radius_max, .. } = scene;
-            text += &format!("radii: {radius_min} to {radius_max}, mean {radius_mean}\n");
+            if scene.spheres > 0 {
+                text += &format!("radii: {radius_min} to {radius_max}, mean {radius_mean}\n");
+            }
         }
         let StructureReport { name, reason, bricks } = structure;
         text += &format!("structure: {name} ({reason}); bricks: {bricks}\n");

@@ -155,7 +155,7 @@ impl RenderPlan {
             0
         });
         let picture = film.pixel_count().saturating_mul(per_pixel);
-        let checker = Checker::BYTES_PER_SPHERE * scene.shape_count() as u64;
+        let checker = Checker::bytes_for(scene);
         let checking = if keeps_rays { picture.saturating_add(checker) } else { 0 };
         let [building, uploading] = if by_tiles {
             let listing = tile_plan::building_bytes(scene.shape_count(), tile_size);
@@ -210,7 +210,7 @@ impl RenderPlan {
     /// what is not hidden.
     #[must_use]
     pub fn brick_count(&self) -> usize {
-        if self.by_tiles { 1 } else { self.accel.brick_count }
+        if self.by_tiles { 1 } else { self.accel.count_bricks() }
     }
 
     /// Returns the minimum number of submissions: one for every brick of every tile. There are usually more, because
@@ -220,11 +220,11 @@ impl RenderPlan {
         self.tile_count * self.brick_count() as u64
     }
 
-    /// Returns the mean number of bytes on the device for a sphere; `None` for an empty scene.
+    /// Returns the mean number of bytes on the device for a sphere; `None` for an empty scene, and for one with cones.
     #[must_use]
     pub fn device_bytes_per_sphere(&self) -> Option<f64> {
         let count = self.accel.statistics.count;
-        (count > 0).then(|| self.device_bytes as f64 / count as f64)
+        (count > 0 && self.accel.cones.is_none()).then(|| self.device_bytes as f64 / count as f64)
     }
 
     /// Checks that the plan fits into the limits of a device and into the free host memory in bytes. If `memory` is
@@ -294,7 +294,10 @@ pub(crate) fn tile_count(film: &Film, [width, height]: [u32; 2]) -> u64 {
 fn in_words(name: &str) -> &'static str {
     match name {
         "spheres" => "the buffer of spheres",
-        "ids" | "ids, cells and references" => "the buffer of ids",
+        "cones" => "the buffer of cones and cylinders",
+        "ids" | "ids, cells and references" | "ids of cones" | "ids, cells and references of cones" => {
+            "the buffer of ids"
+        }
         "colors" => "the buffer of colors",
         "palette" => "the palette",
         "hits" => "the buffer of hits",
@@ -302,7 +305,7 @@ fn in_words(name: &str) -> &'static str {
         "paths" => "the paths of a tile",
         "tables" => "the tables of lights and materials",
         "sky" | "sky shares" => "the image of the sky",
-        "nodes" | "cells" | "references" | "balls" | "tiles" => "the buffer of the structure",
+        "nodes" | "balls" | "tiles" | "nodes of cones" | "capsules" => "the buffer of the structure",
         _ => "a tile of the picture",
     }
 }

@@ -17,8 +17,7 @@ pub struct RendererOptions {
     pub cameras: Vec<CameraKind>,
     /// The structures that the spheres of scenes will have.
     pub structures: Vec<Structure>,
-    /// The structures that the cones and cylinders of scenes will have: the 8-wide tree, and lists where they are asked
-    /// for. Without any, scenes may have spheres only.
+    /// The structures that the cones and cylinders of scenes will have. Without any, scenes may have spheres only.
     pub cone_structures: Vec<Structure>,
     /// Whether scenes may be too large for one binding, so that they consist of several bricks. The same pipelines end
     /// rays at a host's depth, see [`Renderer::record_with_depth`](crate::gpu::Renderer::record_with_depth).

@@ -156,6 +156,8 @@ impl SceneBuffers {
         shape: DeviceShape,
     ) -> Self {
         let UploadedBricks { space: BrickSpace { structure, bounds: (min, max) }, bricks, bytes } = uploaded;
+        // Without spheres, the structure of the cones.
+        let structure = bricks.first().map_or(structure, |brick| brick.kind.structure);
         let lists = bricks.iter().filter(|brick| brick.kind.structure == Structure::List);
         let tests_per_ray = lists.map(|brick| brick.shape_count as usize).max().unwrap_or(0);
         Self {

@@ -31,12 +31,7 @@ pub(crate) fn probe_kernel() -> Kernel {
     entered_kernel(CameraKind::Pinhole, kind, BrickPass::First, "primary/entry.wgsl#probed")
 }
 
-fn entered_kernel(
-    camera: CameraKind,
-    kind: BrickKind,
-    brick_pass: BrickPass,
-    entry: &'static str,
-) -> Kernel {
+fn entered_kernel(camera: CameraKind, kind: BrickKind, brick_pass: BrickPass, entry: &'static str) -> Kernel {
     let shape = ("$shape", primitive_part(kind.primitive));
     let kernel = match kind.structure {
         Structure::Tiles => Kernel::new("trace_tile", &[shape, ("$entry", entry)]),

@@ -216,11 +216,14 @@ impl LitKey {
             _ => "plain-sky",
         };
         let is_pass = |pass| u32::from(self.one_pass == Some(pass));
-        Kernel::new(entry_point, &[structure_choice(BrickKind { structure, primitive: Primitive::Sphere }), ("$sky", sky)])
-            .with(self.mode.constants())
-            .with([camera_constant(self.camera), exclude_by.constant()])
-            .with([("HAS_GROUND", is_pass(OnePass::Ground))])
-            .with([brick_pass.constant(), schedule.constant()])
+        Kernel::new(
+            entry_point,
+            &[structure_choice(BrickKind { structure, primitive: Primitive::Sphere }), ("$sky", sky)],
+        )
+        .with(self.mode.constants())
+        .with([camera_constant(self.camera), exclude_by.constant()])
+        .with([("HAS_GROUND", is_pass(OnePass::Ground))])
+        .with([brick_pass.constant(), schedule.constant()])
     }
 }
 

@@ -65,11 +65,8 @@ pub(crate) struct LivePasses {
 
 /// The kernel that traces the rays of a frame.
 fn live_kernel(key: LiveKey) -> Kernel {
-    Kernel::new("live", &[structure_choice(BrickKind { structure: key.structure, primitive: Primitive::Sphere })]).with([
-        camera_constant(key.camera),
-        key.exclude_by.constant(),
-        ("HAS_GROUND", u32::from(key.has_ground)),
-    ])
+    Kernel::new("live", &[structure_choice(BrickKind { structure: key.structure, primitive: Primitive::Sphere })])
+        .with([camera_constant(key.camera), key.exclude_by.constant(), ("HAS_GROUND", u32::from(key.has_ground))])
 }
 
 /// The kernel that averages over neighbours and writes the picture.
