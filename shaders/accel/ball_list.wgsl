@@ -5,7 +5,7 @@
 // cell that contains the nearest hit point holds all spheres through that point and is tested last. The smallest id
 // therefore wins among equal distances, and no id needs to be read.
 // provides: NO_LIST, find_candidates, list_of, test_candidates
-// needs: BALLS_PER_VECTOR, Found, KIND, LAST_BALL, LIST, NO_HIT, PartInCell, Search, balls, brick, count_iterations,
+// needs: Found, IN_VECTOR, KIND, LAST_BALL, LIST, NO_HIT, PartInCell, Search, balls, brick, count_iterations,
 //   distance_within, ids, met
 
 // The number of balls that are tested before the spheres of those that are met: one for each bit of a word.
@@ -29,7 +29,7 @@ const NO_LIST: u32 = 0xffffffffu;
 
 // The list of the cell with the given word.
 fn list_of(word: u32) -> List {
-    let first = (word & ~KIND) / BALLS_PER_VECTOR;
+    let first = (word & ~KIND) / IN_VECTOR;
     return List(select(NO_LIST, first, (word & KIND) == LIST), 0u, 0u, NO_HIT);
 }
 
@@ -37,7 +37,7 @@ fn list_of(word: u32) -> List {
 fn find_candidates(list: ptr<function, List>, part: PartInCell) {
     var at = (*list).next;
     // Always computed anew, it would be wrong in lavapipe of Mesa 22.3 for rays that have left the loop of the caller.
-    (*list).first = select((*list).first, at * BALLS_PER_VECTOR, at != NO_LIST);
+    (*list).first = select((*list).first, at * IN_VECTOR, at != NO_LIST);
     var candidates = 0u;
     var tested = 0u;
     loop {
@@ -46,7 +46,7 @@ fn find_candidates(list: ptr<function, List>, part: PartInCell) {
         }
         let four = balls[at];
         candidates |= met(four, part) << tested;
-        tested += BALLS_PER_VECTOR;
+        tested += IN_VECTOR;
         at = select(at + 1u, NO_LIST, four.w >= LAST_BALL);
     }
     count_iterations(tested);

@@ -1,11 +1,13 @@
 // Whether the part of a ray in a cell meets the balls of the cell's list. Twin: src/accel/ball.rs, which explains why no
 // sphere is lost.
-// provides: BALLS_PER_VECTOR, LAST_BALL, PartInCell, balls, met, part_in_cell
+// provides: IN_VECTOR, LAST_BALL, PartInCell, balls, met, part_in_cell
 
 // The balls of the lists, four in each vector.
 @group(1) @binding(3) var<storage, read> balls: array<vec4u>;
 
 const BALLS_PER_VECTOR: u32 = 4u;
+// The number of either in a list's vectors.
+const IN_VECTOR: u32 = BALLS_PER_VECTOR;
 // Marks the last ball of a list.
 const LAST_BALL: u32 = 1u << 31u;
 // The number of quanta along a side of a cell.

@@ -1,11 +1,13 @@
 // Whether a ray meets the capsules of a cell's list, which take the place of balls where the shapes are cones. A capsule
 // is what is near the line between two places. Twin: src/accel/cone_cells.rs, which explains why no cone is lost.
-// provides: BALLS_PER_VECTOR, LAST_BALL, PartInCell, balls, met, part_in_cell
+// provides: IN_VECTOR, LAST_BALL, PartInCell, balls, met, part_in_cell
 
 // The capsules of the lists, two in each vector: the first end with the radius, and the second end.
 @group(1) @binding(3) var<storage, read> balls: array<vec4u>;
 
-const BALLS_PER_VECTOR: u32 = 2u;
+const CAPSULES_PER_VECTOR: u32 = 2u;
+// The number of either in a list's vectors.
+const IN_VECTOR: u32 = CAPSULES_PER_VECTOR;
 // Marks the last capsule of a list.
 const LAST_BALL: u32 = 1u << 31u;
 // The number of quanta along a side of a cell.

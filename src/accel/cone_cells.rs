@@ -19,6 +19,10 @@ use super::cells::Cells;
 use super::listed::Listed;
 use crate::geometry::cone::ConeInFrame;
 
+/// The number of capsules in a vector of a kernel.
+#[cfg(all(feature = "gpu", test))]
+pub(crate) const CAPSULES_PER_VECTOR: usize = ConeInFrame::PER_VECTOR;
+
 /// A cone prepared for the search of cells.
 struct Body<'a> {
     cone: &'a ConeInFrame,

@@ -34,6 +34,8 @@ pub(crate) mod wide_tree_visit;
 #[cfg(feature = "gpu")]
 pub(crate) use bricks::BrickBounds;
 pub use bricks::{Accel, Brick, Bricks, Index};
+#[cfg(all(feature = "gpu", test))]
+pub(crate) use cone_cells::CAPSULES_PER_VECTOR;
 #[cfg(feature = "gpu")]
 pub(crate) use plan::LIST_LEN;
 pub use plan::{AccelPlan, ConesPlan, PlannedBuffer};

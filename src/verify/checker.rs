@@ -32,11 +32,11 @@ const ALL_MEASURED: usize = 1 << 16;
 const ONE_IN: usize = 8;
 
 impl<'a> Checker<'a> {
-    /// The largest number of bytes that the checker needs for a scene: 20 for each sphere, 36 for each cone, and up to 16
-    /// for boxes.
+    /// The largest number of bytes that the checker needs for a scene: 20 for each sphere and 36 for each cone, and up to
+    /// 20 for boxes.
     #[must_use]
     pub fn bytes_for(scene: &Scene) -> u64 {
-        36 * scene.spheres().len() as u64 + 52 * scene.cones().len() as u64
+        40 * scene.spheres().len() as u64 + 56 * scene.cones().len() as u64
     }
 
     /// Prepares a scene, in at most [`Self::bytes_for`] bytes.

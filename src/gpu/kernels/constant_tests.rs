@@ -47,6 +47,7 @@ fn of_the_host() -> Vec<(&'static str, Bits)> {
         ("SHAPE_INDEX", !LAST),
         ("LAST_BALL", LAST),
         ("BALLS_PER_VECTOR", accel::ball::BALLS_PER_VECTOR as u32),
+        ("CAPSULES_PER_VECTOR", accel::CAPSULES_PER_VECTOR as u32),
         ("COORDINATE_BITS", accel::ball::COORDINATE_BITS),
         ("RADIUS", accel::ball::RADIUS),
         ("RADIUS_TO_FLOAT", accel::ball::RADIUS_TO_FLOAT),
@@ -106,6 +107,9 @@ fn of_the_host() -> Vec<(&'static str, Bits)> {
 /// Constants that only kernels use, and the shadings, which a test in `records.rs` compares.
 const OF_KERNELS_ALONE: &[&str] = &[
     "NO_SHAPE",
+    // Balls or capsules, which are both compared.
+    "IN_VECTOR",
+    "LEAST_SQUARE_SPAN",
     "WIDE_ROOT",
     "NO_LIST",
     "AT_ONCE",
