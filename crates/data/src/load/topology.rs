@@ -31,7 +31,7 @@ impl Topology {
         given.ok_or_else(|| {
             let message = format!(
                 "a {format} file has positions alone; give a topology, a file that says what the atoms are, such as the \
-                 .pdb or .xyz file of the same system"
+                 .pdb or .gro file of the same system"
             );
             LoadError::new(message).of_kind(LoadErrorKind::NoTopology)
         })
@@ -49,8 +49,8 @@ impl Topology {
         )))
     }
 
-    /// Returns the spheres of a frame. Radii, colours and columns are those of the topology. Positions, cell and
-    /// further columns are those of the frame.
+    /// Returns the spheres of a frame. Radii, colours and columns are those of the topology, but for its velocities,
+    /// which belong to another frame. Positions, cell and further columns are those of the frame.
     pub(super) fn join(&self, frame: usize, positions: Positions) -> Result<Dataset, LoadError> {
         let Positions { centers, cell, columns } = positions;
         self.check(frame, centers.len())?;
@@ -59,8 +59,10 @@ impl Topology {
         let mut loaded = Dataset::new(SphereArray::F64(spheres.collect()));
         loaded.colors.clone_from(&self.loaded.colors);
         loaded.opacities.clone_from(&self.loaded.opacities);
-        let is_new = |column: &&Column| columns.iter().all(|new| new.name != column.name);
-        loaded.columns = self.loaded.columns.iter().filter(is_new).cloned().collect();
+        let stays = |column: &&Column| {
+            columns.iter().all(|new| new.name != column.name) && !column.name.starts_with("velocity.")
+        };
+        loaded.columns = self.loaded.columns.iter().filter(stays).cloned().collect();
         loaded.columns.extend(columns);
         loaded.cell = cell;
         let named = |note: &String| format!("the topology {}: {note}", self.path.display());

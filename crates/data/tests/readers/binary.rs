@@ -213,6 +213,21 @@ fn xtc_files() {
     }
 }
 
+#[test]
+fn coordinates_of_gromacs_are_a_topology() {
+    let folder = TempDir::new().unwrap();
+    let path = folder.path().join("a.gro");
+    let atom = |index: usize| format!("{index:5}SOL     OW{index:5}   0.000   0.000   0.000  1.0000  1.0000  1.0000\n");
+    std::fs::write(&path, format!("title\n9\n{}1 1 1\n", (1..=9).map(atom).collect::<String>())).unwrap();
+    let options = Options::default().with_topology(&path).with_frame(1);
+    let file = gromacs::xtc(2, 9, molly::Magic::Xtc1995);
+    let loaded = read("xtc", &file, &options).unwrap();
+    check_gromacs(&loaded, 1, 9);
+    assert_eq!((loaded.cell, loaded.labels("residue").unwrap().names.len()), (Some(CELL), 1));
+    // Velocities of another frame would be wrong.
+    assert_eq!(loaded.column("velocity.x"), None);
+}
+
 /// Random positions from dense to far apart. For numbers that take more than 64 bits together, molly writes other
 /// values than it reads; a test beside the reader has such numbers.
 #[test]

@@ -46,6 +46,38 @@ pub(super) fn symbol(name: [u8; 4], symbol: [u8; 2], residue: Residue) -> (Strin
     }
 }
 
+/// Returns the name as in columns 13-16 of a PDB file, and the symbol of the element, for files in which the place of a
+/// name says nothing. The symbol is blank if the name says enough.
+///
+/// A name of two letters is carbon and the like (`CA`, `HG`, `NA`), unless its residue has the name of this ion, its
+/// second letter is in lower case, or a molecule hardly ever has such a name for another element.
+pub(crate) fn unaligned(name: &[u8], residue: &[u8]) -> ([u8; 4], [u8; 2]) {
+    let letters = name.iter().position(u8::is_ascii_alphabetic).map_or(name, |first| &name[first..]);
+    let mut field = [b' '; 4];
+    field[1..].iter_mut().zip(letters).for_each(|(to, from)| *to = *from);
+    let word = |text: &'_ [u8]| {
+        let end = text.iter().position(|byte| !byte.is_ascii_alphabetic()).unwrap_or(text.len());
+        text[..end].to_ascii_uppercase()
+    };
+    let symbol = word(letters);
+    let is_ion = symbol == word(residue);
+    let symbol = match (symbol.as_slice(), letters) {
+        // Names of ions in the force fields of CHARMM.
+        (b"SOD", _) if is_ion => *b"NA",
+        (b"POT", _) if is_ion => *b"K ",
+        (b"CLA", _) if is_ion => *b"CL",
+        (b"CAL", _) if is_ion => *b"CA",
+        (b"LIT", _) if is_ion => *b"LI",
+        (b"RUB", _) if is_ion => *b"RB",
+        (b"CES", _) if is_ion => *b"CS",
+        (b"BAR", _) if is_ion => *b"BA",
+        ([a, b], [_, second, ..]) if is_ion || second.is_ascii_lowercase() => [*a, *b],
+        (b"CL" | b"BR" | b"FE" | b"SI" | b"CU" | b"PT", _) => [symbol[0], symbol[1]],
+        _ => *b"  ",
+    };
+    (field, symbol)
+}
+
 /// Whether an atom's name may mean calcium or, in the wrong columns, the alpha carbon. The atom has no symbol, and its
 /// residue is neither known nor the calcium ion.
 pub(super) fn is_doubtful(name: [u8; 4], symbol: [u8; 2], kind: Residue, residue: &[u8]) -> bool {

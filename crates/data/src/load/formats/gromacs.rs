@@ -1,9 +1,12 @@
-//! Reads trajectories of GROMACS: `.trr` (full precision) and `.xtc` (compressed). Both are in XDR, which is big-endian
-//! and pads everything to 4 bytes. Lengths are nm in the file and Å in the result, to fit other files of atoms.
+//! Reads files of GROMACS: coordinates as text (`.gro`), and the trajectories `.trr` (full precision) and `.xtc`
+//! (compressed). The trajectories are in XDR, which is big-endian and pads everything to 4 bytes. Lengths are nm in the
+//! file and Å in the result, to fit other files of atoms.
 
+mod gro;
 mod trr;
 mod xtc;
 
+pub(super) use gro::{FRAMES as GRO, starts as starts_gro};
 pub(super) use trr::{FRAMES as TRR, starts as starts_trr};
 pub(super) use xtc::{FRAMES as XTC, starts as starts_xtc};
 

@@ -77,6 +77,15 @@ pub static FORMATS: &[Format] = &[
         ..TEXT
     },
     Format {
+        name: "gro",
+        extensions: &["gro"],
+        about: "Text in the fixed columns of GROMACS, with a box and perhaps velocities",
+        method: ReadMethod::Frames(gromacs::GRO),
+        has_colors: true,
+        starts: gromacs::starts_gro,
+        ..TEXT
+    },
+    Format {
         name: "lammps-dump",
         extensions: &["lammpstrj", "dump"],
         about: "A dump of atoms of LAMMPS; a frame is a step",
@@ -335,6 +344,7 @@ mod tests {
             (b"ply\r\nformat ascii 1.0", "ply"),
             (b"12\n\nH 0 0 0", "xyz"),
             (b"HEADER    OXYGEN TRANSPORT", "pdb"),
+            (b"Water t= 0\n 1\n    1SOL     OW    1   0.126   1.624   1.679\n", "gro"),
             (b"ITEM: TIMESTEP\n0\n", "lammps-dump"),
             (b"id,X,y,z,q\n1,2", "csv"),
             (b"made by me\n\n 20 atoms\n", "lammps-data"),

@@ -85,7 +85,8 @@ fn find(lines: &mut LineReader<'_>, last: Option<usize>) -> io::Result<FrameInde
     Ok(found)
 }
 
-fn counted(atoms: usize) -> String {
+/// A number of atoms in words.
+pub(super) fn counted(atoms: usize) -> String {
     if atoms == 1 { "1 atom".to_owned() } else { format!("{atoms} atoms") }
 }
 

@@ -145,7 +145,8 @@ fn read(reader: &mut Reader<'_>, frame: usize, topology: &Topology) -> Result<Po
     Ok(positions)
 }
 
-fn columns(name: &str, values: &[f64], factor: f64) -> impl Iterator<Item = Column> {
+/// Makes a column of each component of vectors.
+pub(super) fn columns(name: &str, values: &[f64], factor: f64) -> impl Iterator<Item = Column> {
     let names = component_names(name, 3).into_iter().enumerate();
     names.map(move |(first, name)| {
         let values = values.iter().skip(first).step_by(3).map(|value| value * factor);
