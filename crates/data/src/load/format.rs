@@ -17,6 +17,8 @@ pub struct Format {
     pub name: &'static str,
     /// File name extensions of the format, in lower case and without the dot.
     pub extensions: &'static [&'static str],
+    /// Starts of the names of files that have no extension, such as `POSCAR`.
+    pub file_names: &'static [&'static str],
     /// Contents of a file of this format, in a few words for users.
     pub about: &'static str,
     pub(super) method: ReadMethod,

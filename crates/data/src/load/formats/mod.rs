@@ -1,6 +1,7 @@
 //! The table of file formats, one row for each. Formats are looked up by name, extension or content, and each row says
 //! which options apply to the format.
 
+use std::ffi::OsStr;
 use std::io;
 use std::path::Path;
 
@@ -23,6 +24,7 @@ pub mod npz;
 pub mod pdb;
 mod ply;
 pub mod raw;
+mod vasp;
 mod vtk;
 pub mod xyz;
 
@@ -30,6 +32,7 @@ pub mod xyz;
 const RAW: Format = Format {
     name: "raw-f32x4",
     extensions: &[],
+    file_names: &[],
     about: "Raw numbers without a header: x, y, z, radius in little-endian f32",
     method: ReadMethod::Whole(|bytes, _| Ok(Dataset::new(raw::read_spheres(bytes)?))),
     needs_topology: false,
@@ -105,6 +108,17 @@ pub static FORMATS: &[Format] = &[
         may_lack_radii: true,
         z_is_up: true,
         starts: lammps::data::starts,
+        ..TEXT
+    },
+    Format {
+        name: "poscar",
+        extensions: &["vasp", "poscar"],
+        file_names: &["POSCAR", "CONTCAR", "XDATCAR"],
+        about: "Structures of VASP (POSCAR, CONTCAR); a frame is a configuration of XDATCAR",
+        method: ReadMethod::Frames(vasp::FRAMES),
+        may_lack_radii: true,
+        has_colors: true,
+        starts: vasp::starts,
         ..TEXT
     },
     Format {
@@ -254,9 +268,14 @@ impl Format {
         Ok(Self::of_content(&Source::open(path)?.start()?))
     }
 
-    /// Returns the format with the extension of a file's name, without `.gz`.
+    /// Returns the format with the extension of a file's name, without `.gz`, or else with the start of the name.
     fn of_file_name(path: &Path) -> Option<&'static Self> {
-        without_gz(path).extension()?.to_str().and_then(Self::of_extension)
+        let path = without_gz(path);
+        let by_extension = path.extension().and_then(OsStr::to_str).and_then(Self::of_extension);
+        by_extension.or_else(|| {
+            let name = path.file_name()?.to_str()?;
+            FORMATS.iter().find(|format| format.file_names.iter().any(|start| name.starts_with(start)))
+        })
     }
 
     /// Returns the format of a file by its extension or else by its first bytes.
@@ -275,12 +294,16 @@ impl Format {
         ))
     }
 
-    /// Lists the extensions of all formats for which `is_wanted` returns true, such as `.npy, .npz`.
+    /// Lists the extensions and names of files of all formats for which `is_wanted` returns true, such as `.npy, .npz,
+    /// POSCAR*`.
     #[must_use]
     pub fn extensions_of(is_wanted: impl Fn(&Self) -> bool) -> String {
         let wanted = FORMATS.iter().filter(|format| is_wanted(format));
-        let extensions = wanted.flat_map(|format| format.extensions);
-        extensions.map(|extension| format!(".{extension}")).collect::<Vec<_>>().join(", ")
+        let names = wanted.flat_map(|format| {
+            let extensions = format.extensions.iter().map(|extension| format!(".{extension}"));
+            extensions.chain(format.file_names.iter().map(|start| format!("{start}*")))
+        });
+        names.collect::<Vec<_>>().join(", ")
     }
 
     /// Checks that every given option applies to this format.
@@ -328,6 +351,21 @@ mod tests {
     }
 
     #[test]
+    fn names_of_files_show_the_format() {
+        for (name, format) in [
+            ("POSCAR", Some("poscar")),
+            ("a/XDATCAR_300K.gz", Some("poscar")),
+            ("CONTCAR.2", Some("poscar")),
+            ("POSCAR.xyz", Some("xyz")),
+            ("a.VASP", Some("poscar")),
+            ("poscar", None),
+            ("POSCAR/a.out", None),
+        ] {
+            assert_eq!(Format::of_file_name(Path::new(name)).map(|format| format.name), format, "{name}");
+        }
+    }
+
+    #[test]
     fn options_that_do_not_apply_are_refused() {
         let raw = Format::of_name("raw-f32x4").unwrap();
         let refused = raw.read(&[], &Options::default().with_frame(1)).unwrap_err().to_string();
@@ -345,6 +383,7 @@ mod tests {
             (b"12\n\nH 0 0 0", "xyz"),
             (b"HEADER    OXYGEN TRANSPORT", "pdb"),
             (b"Water t= 0\n 1\n    1SOL     OW    1   0.126   1.624   1.679\n", "gro"),
+            (b"salt\n5.64\n1 0 0\n0 1 0\n0 0 1\nNa Cl\n4 4\nDirect\n", "poscar"),
             (b"ITEM: TIMESTEP\n0\n", "lammps-dump"),
             (b"id,X,y,z,q\n1,2", "csv"),
             (b"made by me\n\n 20 atoms\n", "lammps-data"),
