@@ -24,6 +24,7 @@ pub mod npz;
 pub mod pdb;
 mod ply;
 pub mod raw;
+mod sdf;
 mod vasp;
 mod vtk;
 pub mod xyz;
@@ -119,6 +120,16 @@ pub static FORMATS: &[Format] = &[
         may_lack_radii: true,
         has_colors: true,
         starts: vasp::starts,
+        ..TEXT
+    },
+    Format {
+        name: "sdf",
+        extensions: &["sdf", "mol"],
+        about: "Molecules in the formats of MDL, V2000 and V3000; a frame is a molecule",
+        method: ReadMethod::Frames(sdf::FRAMES),
+        may_lack_radii: true,
+        has_colors: true,
+        starts: sdf::starts,
         ..TEXT
     },
     Format {
@@ -384,6 +395,7 @@ mod tests {
             (b"HEADER    OXYGEN TRANSPORT", "pdb"),
             (b"Water t= 0\n 1\n    1SOL     OW    1   0.126   1.624   1.679\n", "gro"),
             (b"salt\n5.64\n1 0 0\n0 1 0\n0 0 1\nNa Cl\n4 4\nDirect\n", "poscar"),
+            (b"water\n\n\n  3  2  0  0  0  0            999 V2000\n", "sdf"),
             (b"ITEM: TIMESTEP\n0\n", "lammps-dump"),
             (b"id,X,y,z,q\n1,2", "csv"),
             (b"made by me\n\n 20 atoms\n", "lammps-data"),
