@@ -203,7 +203,7 @@ impl Molecule {
                 if let Some(pairs) = text.strip_prefix(b"M  CHG") {
                     self.take_charges(pairs).ok_or_else(|| {
                         let message = "a line of charges has the number of its atoms, and for each the index, from 1, \
-                                       and the charge, such as `M  CHG  1   4   1`";
+                                       and the charge, such as `M CHG 1 4 1`";
                         LoadError::line(lines.line, message)
                     })?;
                 }

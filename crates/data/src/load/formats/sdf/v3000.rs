@@ -62,7 +62,7 @@ fn next(lines: &mut NumberedLines<'_>) -> Result<Option<(usize, Vec<u8>)>, LoadE
         if first.trim_ascii().is_empty() {
             return Ok(Some((line, Vec::new())));
         }
-        let message = "a line of a molecule in V3000 must start with `M  V30`, and `M  END` must end the molecule";
+        let message = "a line of a molecule in V3000 must start with `M V30`, and `M END` must end the molecule";
         return Err(LoadError::line(line, message));
     };
     let mut text = text.trim_ascii_end().to_vec();
