@@ -5,18 +5,18 @@
 //! properties, and perhaps items of data; `$$$$` ends it. Lengths are in Å. The columns are `species`, `charge`, and
 //! `molecule` if the molecule has a name. Bonds and data are counted, but not used.
 
+mod molecule;
 mod v3000;
 
 use std::io;
 
+use self::molecule::{Molecule, NumberedLines};
 use crate::load::dataset::Dataset;
 use crate::load::error::{LoadError, Place};
 use crate::load::format::{FrameIndex, FrameSpan, FrameText, Frames, Options};
-use crate::load::labels::LabelsBuilder;
 use crate::load::numbers::number;
 use crate::load::rows::{self, Values};
 use crate::load::source::LineReader;
-use crate::load::table::{Table, TableColumn};
 use pinhole::internals::text::{shortened, without_byte_order_mark};
 
 pub(super) const FRAMES: Frames = Frames::Lines { find, read };
@@ -87,47 +87,7 @@ fn read(frame: &FrameText<'_>, options: &Options) -> Result<Dataset, LoadError> 
     molecule.into_loaded(&name, is_drawing, options)
 }
 
-/// The lines of a record, with the number of lines read.
-struct NumberedLines<'a> {
-    lines: rows::Lines<'a>,
-    line: usize,
-}
-
-impl<'a> Iterator for NumberedLines<'a> {
-    type Item = &'a [u8];
-
-    fn next(&mut self) -> Option<&'a [u8]> {
-        let text = self.lines.next()?;
-        self.line += 1;
-        Some(text)
-    }
-}
-
-/// The atoms that were read so far.
-#[derive(Default)]
-struct Molecule {
-    places: [Vec<f64>; 3],
-    species: LabelsBuilder,
-    charges: Vec<f64>,
-    /// Line of each atom.
-    lines: Vec<usize>,
-    /// Number of bonds.
-    bonds: usize,
-    /// Number of items of data, such as measured values, after the molecule.
-    data: usize,
-    notes: Vec<String>,
-}
-
 impl Molecule {
-    fn push(&mut self, line: usize, place: [f64; 3], symbol: &[u8], charge: f64) {
-        for (values, value) in self.places.iter_mut().zip(place) {
-            values.push(value);
-        }
-        self.species.push(symbol);
-        self.charges.push(charge);
-        self.lines.push(line);
-    }
-
     fn read_v2000(&mut self, counts: &[u8], lines: &mut NumberedLines<'_>) -> Result<(), LoadError> {
         let line_of_counts = lines.line;
         let count = |first: usize, what: &str| {
@@ -220,35 +180,6 @@ impl Molecule {
             *self.charges.get_mut(index)? = f64::from(values.next()??);
         }
         values.next().is_none().then_some(())
-    }
-
-    fn into_loaded(self, name: &str, is_drawing: bool, options: &Options) -> Result<Dataset, LoadError> {
-        let Self { places, species, charges, lines, bonds, data, notes } = self;
-        let count = lines.len();
-        let places = ["x", "y", "z"].into_iter().zip(places).map(|(name, values)| TableColumn::numbers(name, values));
-        let mut table = Table { columns: places.collect() };
-        table.columns.push(TableColumn::labels("species", species.into_labels()));
-        table.columns.push(TableColumn::numbers("charge", charges));
-        if !name.is_empty() {
-            let mut molecule = LabelsBuilder::default();
-            molecule.index(name.as_bytes());
-            molecule.indices = vec![0; count];
-            table.columns.push(TableColumn::labels("molecule", molecule.into_labels()));
-        }
-        let mut loaded = rows::into_loaded(table, options, |row| lines.get(row).copied().unwrap_or_default())?;
-        loaded.notes.extend(notes);
-        if is_drawing {
-            loaded.notes.push("the positions are those of a drawing (2D), not of a molecule in space".to_owned());
-        }
-        if bonds > 0 {
-            loaded
-                .notes
-                .push(format!("the bonds of the file ({bonds}) are not used; --bonds finds bonds by distances"));
-        }
-        if data > 0 {
-            loaded.notes.push(format!("the items of data after the molecule ({data}) are not used"));
-        }
-        Ok(loaded)
     }
 }
 

@@ -1,6 +1,6 @@
 //! Reads the molecule of a record in V3000: lines that start with `M  V30`, in blocks between BEGIN and END.
 
-use super::{Molecule, NumberedLines};
+use super::molecule::{Molecule, NumberedLines};
 use crate::load::error::{LoadError, Place};
 use crate::load::numbers::number;
 use crate::load::rows::Values;
