@@ -74,7 +74,7 @@ impl Brick {
         BrickKind { structure, primitive: self.primitive }
     }
 
-    /// Whether the spheres are in a grid in which some cells have grids of their own.
+    /// True if the spheres are in a grid in which some cells have grids of their own.
     pub(crate) fn is_nested(&self) -> bool {
         let is_of_spheres = self.primitive == Primitive::Sphere;
         matches!(&self.index, Index::Grid(grid) if is_of_spheres && grid.is_nested())

@@ -132,7 +132,7 @@ fn is_selective(text: &[u8]) -> bool {
     matches!(text.trim_ascii_start().first(), Some(b'S' | b's'))
 }
 
-/// What the numbers of positions are: VASP looks only at the first letter.
+/// The meaning of positions: VASP looks only at the first letter.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 enum Mode {
     /// Fractions of the lattice vectors.
