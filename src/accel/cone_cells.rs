@@ -3,9 +3,7 @@
 //!
 //! # Why no cone is lost
 //! A hit is within the margin of the cone, as for the boxes of trees; for cones this is not proved as it is for spheres,
-//! but random scenes are searched by lists, trees and grids (`tests/gpu/cones.rs`). Given that:
-//!
-//! A cone is left out of a cell only if a plane separates them by more than the margin, or if the cell is inside by more
+//! but random scenes are searched by lists, trees and grids (`tests/gpu/cones.rs`). Given that, a cone is left out of a cell only if a plane separates them by more than the margin, or if the cell is inside by more
 //! than the margin. Planes are tried whose normals are along the cell's sides, across one of them and the axis
 //! (Gottschalk, Lin and Manocha, 1996, for boxes), and along the line from the cone to the middle of the cell. All
 //! numbers are f64. So the cells are those near the cone and a few others at its rims.
@@ -111,13 +109,7 @@ impl Listed for ConeInFrame {
         let [low, high] = self.corners();
         let (low, high) = (low - body.margin, high + body.margin);
         let (first, end) = (cell_of(low), cell_of(high));
-        let along = if body.axis.abs().x >= body.axis.abs().max_element() {
-            0
-        } else if body.axis.abs().y >= body.axis.abs().z {
-            1
-        } else {
-            2
-        };
+        let along = body.axis.abs().max_position();
         for layer in first[along] as u32..=end[along] as u32 {
             let near = min[along] + f64::from(layer) * size;
             let ends = parts(body.start[along], body.span[along], [near - body.reach, near + size + body.reach]);

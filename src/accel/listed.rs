@@ -1,4 +1,4 @@
-//! What a grid asks of the shapes that its cells list: spheres, and cones in `cone_cells.rs`.
+//! The shapes that the cells of a grid can list: spheres, and cones in `cone_cells.rs`.
 
 use bytemuck::Pod;
 

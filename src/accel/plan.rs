@@ -148,9 +148,11 @@ impl AccelPlan {
     /// The number of bricks of all shapes.
     #[cfg(feature = "gpu")]
     pub(crate) fn count_bricks(&self) -> usize {
-        let primitives: Vec<Primitive> = self.primitives().collect();
-        let of_cones = self.cones.map_or(0, |cones| cones.brick_count);
-        of_cones + if primitives.contains(&Primitive::Sphere) { self.brick_count } else { 0 }
+        let of = |primitive| match primitive {
+            Primitive::Sphere => self.brick_count,
+            Primitive::Cone => self.cones.map_or(0, |cones| cones.brick_count),
+        };
+        self.primitives().map(of).sum()
     }
 
     /// The primitives of the bricks.
