@@ -1,6 +1,6 @@
 // A brick, which is a part of the scene that fits into bindings, and the tests of its shapes.
 // provides: Nearest, Search, brick, distance_within, hit_of, ids, offer, shapes
-// needs: Brick, Entry, Excluded, Hit, NO_HIT, Ray, Shape, intersect, is_excluded
+// needs: Brick, Entry, Excluded, Hit, NO_HIT, Ray, Shape, distance_of_excluded, intersect, is_excluded
 
 struct Nearest {
     t: f32,
@@ -31,7 +31,7 @@ fn distance_within(search: Search, shape_index: u32, limit: f32) -> f32 {
     let shape = shapes[shape_index];
     var t = intersect(search.ray, shape).t;
     if (t < limit && is_excluded(search.excluded, shape_index, shape)) {
-        t = NO_HIT;
+        t = distance_of_excluded(search, shape);
     }
     return t;
 }

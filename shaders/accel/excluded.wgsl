@@ -1,6 +1,6 @@
 // Shapes that are excluded from a search. A ray that departs from a shape excludes it: outside, the ray never returns
-// to a sphere, and inside, the distance to its far side is known without a search. No minimum distance is therefore
-// needed. A ray towards a light that is a shape excludes that shape as well.
+// to a sphere or a cone, and inside, the distance to its far side is known without a search, or the search computes that side
+// alone. No minimum distance is therefore needed. A ray towards a light that is a shape excludes that shape as well.
 //
 // The departed shape is excluded by its index, which is that of the searched structure, if all equal shapes are in the
 // same brick. Otherwise it is excluded by its id: an equal shape may be in another brick, or the searched structure may
@@ -9,8 +9,8 @@
 
 //// none
 // No excluded shapes, for rays that do not start on a shape.
-// provides: Excluded, is_excluded, no_exclusion
-// needs: Shape
+// provides: Excluded, distance_of_excluded, is_excluded, no_exclusion
+// needs: NO_HIT, Search, Shape
 
 struct Excluded {
     nothing: u32,
@@ -24,10 +24,14 @@ fn is_excluded(excluded: Excluded, shape_index: u32, shape: Shape) -> bool {
     return false;
 }
 
+fn distance_of_excluded(search: Search, shape: Shape) -> f32 {
+    return NO_HIT;
+}
+
 //// departed
 // Excluding the departed shape.
-// provides: Excluded, excluded_by, is_excluded
-// needs: Departure, Shape, departed_shape, ids, is_same, no_shape
+// provides: Excluded, distance_of_excluded, excluded_by, is_excluded
+// needs: Departure, NO_HIT, Search, Shape, departed_shape, ids, is_same, no_shape, searched_far_side
 
 // Whether shapes are excluded by their ids, and not by their indices.
 override EXCLUDES_BY_ID: bool;
@@ -35,10 +39,12 @@ override EXCLUDES_BY_ID: bool;
 struct Excluded {
     departed: Shape,
     id: u32,
+    // Whether the ray goes inside, and the search has to find the far side.
+    goes_inside: bool,
 }
 
 fn excluded_by(departure: Departure) -> Excluded {
-    var excluded = Excluded(no_shape(), departure.id);
+    var excluded = Excluded(no_shape(), departure.id, false);
     if (!EXCLUDES_BY_ID) {
         excluded.departed = departed_shape(departure);
     }
@@ -52,10 +58,15 @@ fn is_excluded(excluded: Excluded, shape_index: u32, shape: Shape) -> bool {
     return is_same(shape, excluded.departed);
 }
 
+fn distance_of_excluded(search: Search, shape: Shape) -> f32 {
+    return select(NO_HIT, searched_far_side(search.ray, shape), search.excluded.goes_inside);
+}
+
 //// departed-and-light
 // Excluding the departed shape, and also the emitter that the ray is directed to.
-// provides: Excluded, excluded_by, is_excluded
-// needs: Departure, NO_EMITTER, NO_ID, SAMPLES_LIGHT, Shape, departed_shape, emitter, ids, is_same, no_shape
+// provides: Excluded, distance_of_excluded, excluded_by, is_excluded
+// needs: Departure, NO_EMITTER, NO_HIT, NO_ID, SAMPLES_LIGHT, Search, Shape, departed_shape, emitter, ids, is_same,
+//   no_shape
 
 // Whether shapes are excluded by their ids, and not by their indices.
 override EXCLUDES_BY_ID: bool;
@@ -86,4 +97,8 @@ fn is_excluded(excluded: Excluded, shape_index: u32, shape: Shape) -> bool {
         return id == excluded.id || (SAMPLES_LIGHT && id == excluded.light_id);
     }
     return is_same(shape, excluded.departed) || (SAMPLES_LIGHT && is_same(shape, excluded.light));
+}
+
+fn distance_of_excluded(search: Search, shape: Shape) -> f32 {
+    return NO_HIT;
 }

@@ -4,7 +4,7 @@
 // provides: live
 // needs: CameraRay, Departure, Hit, Lit, NO_EMITTER, NO_HIT, NO_ID, Shades, WORKGROUP_SIDE, background, camera_ray,
 //   dispatch, enter_scene, excluded_by, frame, ground_vertex, is_ground, lighting, lit_surface, nearest_hit,
-//   pack_normal, pixel_in_tile, pixel_seed, relative_location, report_spent, sphere_vertex, start_fences
+//   pack_normal, pixel_in_tile, pixel_seed, relative_location, report_spent, shape_vertex, start_fences
 
 // Four vectors for each pixel, row by row:
 //   the colour and the opacity `steady`,
@@ -33,7 +33,7 @@ fn find(pixel: vec2u, is_traced: bool, seed: u32, number: u32) -> PixelLight {
     if (on_ground || hit.id != NO_ID) {
         var vertex = ground_vertex(made.ray, made.distance);
         if (!on_ground) {
-            vertex = sphere_vertex(made.ray, hit, false);
+            vertex = shape_vertex(made.ray, hit, false);
         }
         let lit = lit_surface(made, vertex, shown, seed, number);
         found = PixelLight(lit, vertex.normal, made.distance + vertex.distance, vertex.id);

@@ -5,6 +5,9 @@
 fn departed_shape(departure: Departure) -> Shape {
     let at = departure.shape_index - brick.first_shape;
     let is_here = departure.id != NO_ID && at < brick.shape_count;
-    let shape = shapes[select(0u, at, is_here)];
-    return select(no_shape(), shape, is_here);
+    var shape = no_shape();
+    if (is_here) {
+        shape = shapes[at];
+    }
+    return shape;
 }

@@ -3,10 +3,10 @@
 // GPUs, so large a kernel leaves room for few invocations. Twin: src/cpu/light/path.rs.
 // dispatched: for some samples of all pixels of a tile.
 // provides: whole_paths
-// needs: Arrived, CameraRay, Departure, HIT_NOTHING, HIT_SPHERE, NO_EMITTER, PATH_ALIVE, PATH_INSIDE, PATH_ON_GROUND,
+// needs: Arrived, CameraRay, Departure, HIT_NOTHING, HIT_SHAPE, NO_EMITTER, PATH_ALIVE, PATH_INSIDE, PATH_ON_GROUND,
 //   Path, Ray, begin_path, classify_hit, dispatch, distance_from_camera, emitter_of, enter_scene, excluded_by,
 //   first_hit, frame, ground_vertex, has, leave, light_of_miss, lighting, load_sums, nearest_hit, pixel_in_tile,
-//   pixel_seed, report_spent, seen_light, spend, sphere_vertex, start_fences, store_sums, with_sample
+//   pixel_seed, report_spent, seen_light, shape_vertex, spend, start_fences, store_sums, with_sample
 
 // The path after its next surface, whose last number the dispatch has. An early return would crash Mesa 22.3.
 fn extended(path: Path, seed: u32, sample: u32) -> Path {
@@ -17,8 +17,8 @@ fn extended(path: Path, seed: u32, sample: u32) -> Path {
     let behind = distance_from_camera(path.first.w, path.surface);
     let kind = classify_hit(ray, hit, has(path.flags, PATH_ON_GROUND), behind);
     var vertex = ground_vertex(ray, behind);
-    if (kind == HIT_SPHERE) {
-        vertex = sphere_vertex(ray, hit, goes_inside && hit.id == path.departure.id);
+    if (kind == HIT_SHAPE) {
+        vertex = shape_vertex(ray, hit, goes_inside && hit.id == path.departure.id);
     }
     let sky = path.through * light_of_miss(ray.direction, path.flags, path.density);
     let next = leave(Arrived(ray, path.density, path.flags, path.through, path.medium, path.radiance, path.first,

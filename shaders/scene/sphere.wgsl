@@ -4,7 +4,7 @@
 // 7 (2019): the discriminant is computed from the foot point (after Hearn and Baker), so that it is not lost in the
 // squared distance, and the roots as q and c/q, so that neither is a difference of nearly equal numbers. Changes: the
 // direction must have unit length, and only the relevant root is computed. A tangent ray hits.
-// provides: Shape, discriminant_of, intersect, is_same, no_shape, shape_normal, sphere_normal
+// provides: Shape, discriminant_of, intersect, is_same, no_shape, searched_far_side, shape_normal, sphere_normal
 // needs: NO_HIT, Ray, fence, fence3
 
 // A sphere: its centre in the scene's frame, and its radius.
@@ -51,6 +51,11 @@ fn intersect(ray: Ray, sphere: Shape) -> SphereHit {
     // t is negative behind the origin, and zero for a ray that leaves the sphere.
     let is_hit = discriminant >= 0.0 && t > 0.0;
     return SphereHit(select(NO_HIT, t, is_hit), from_foot, foot_to_center);
+}
+
+// What a search finds of a sphere on which a ray starts inwards: nothing, because its far side is known before.
+fn searched_far_side(ray: Ray, sphere: Shape) -> f32 {
+    return NO_HIT;
 }
 
 // The normal at the point where a ray hits a sphere.

@@ -26,5 +26,5 @@ struct ConeAnswer {
 fn cones(@builtin(global_invocation_id) invocation: vec3u) {
     let tested = rays_and_cones[invocation.x];
     let hit = intersect(Ray(tested.origin, tested.direction), tested.cone);
-    answers[invocation.x] = ConeAnswer(cone_normal(hit), hit.t);
+    answers[invocation.x] = ConeAnswer(cone_normal(hit.crossing, hit.is_near), hit.t);
 }

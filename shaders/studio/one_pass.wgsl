@@ -5,7 +5,7 @@
 // provides: one_pass
 // needs: CameraRay, Departure, Hit, NO_EMITTER, NO_HIT, NO_ID, Sample, WORKGROUP_SIDE, background, camera_ray,
 //   dispatch, enter_scene, excluded_by, filter_offset, frame, ground_vertex, is_ground, lighting, load_sums,
-//   nearest_hit, pixel_in_tile, pixel_seed, report_spent, sample_location, sample_pair, sphere_vertex, start_fences,
+//   nearest_hit, pixel_in_tile, pixel_seed, report_spent, sample_location, sample_pair, shape_vertex, start_fences,
 //   store_sums, surface_sample, unit2, with_sample
 
 // There is no early return: with one, Mesa 22.3 fails to compile the kernel.
@@ -22,7 +22,7 @@ fn take_sample(pixel: vec2u, seed: u32, number: u32) -> Sample {
     if (on_ground || hit.id != NO_ID) {
         var vertex = ground_vertex(made.ray, made.distance);
         if (!on_ground) {
-            vertex = sphere_vertex(made.ray, hit, false);
+            vertex = shape_vertex(made.ray, hit, false);
         }
         sample = surface_sample(made, vertex, shown, seed, number);
     }

@@ -111,7 +111,7 @@ impl Accel {
         (self.min, self.max)
     }
 
-    /// Returns true if spheres with the same centre may be in different bricks.
+    /// Returns true if equal shapes may be in different bricks.
     #[must_use]
     pub fn may_split_duplicates(&self) -> bool {
         self.may_split_duplicates
@@ -184,6 +184,7 @@ impl<'a> Bricks<'a> {
                 self.parts.clear();
             }
             self.parts_of_cones = ranges(cones.len(), plan.per_brick).into();
+            self.may_split_duplicates |= self.parts_of_cones.len() > 1;
             self.cones = cones;
         }
         self
@@ -213,7 +214,7 @@ impl Bricks<'_> {
         self.plan.structure
     }
 
-    /// Returns true if spheres with the same centre may be in different bricks.
+    /// Returns true if equal shapes may be in different bricks.
     #[must_use]
     pub fn may_split_duplicates(&self) -> bool {
         self.may_split_duplicates

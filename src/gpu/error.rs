@@ -154,12 +154,6 @@ pub enum GpuError {
          settings"
     )]
     NoOccluders,
-    /// Light was requested of a device for a scene with cones or cylinders.
-    #[error(
-        "devices do not light cylinders and cones yet, such as bonds and the edges of cells; add `--backend cpu`, or leave \
-         out what makes light random (`--style default`)"
-    )]
-    LitCones,
     /// A live picture was requested of a scene, or with settings, that live pictures do not support.
     #[error("a live picture needs {needs}; show a `LitPicture` instead")]
     NotLive {

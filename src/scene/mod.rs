@@ -217,20 +217,23 @@ impl Scene {
         self.appearance.is_opaque()
     }
 
-    /// A scene of only the opaque spheres in the same frame. `None` if all spheres are opaque.
+    /// A scene of only the opaque shapes in the same frame. `None` if all are opaque.
     #[cfg(feature = "gpu")]
     pub(crate) fn opaque(&self) -> Option<Self> {
         if self.appearance.is_opaque() {
             return None;
         }
-        let spheres: Vec<[f32; 4]> = self.opaque_ids().map(|id| self.spheres()[id as usize]).collect();
-        let bounds = frame::bounds_in_frame(self.origin, &spheres);
-        Some(Self::in_frame(self.origin, (spheres, Vec::new()), LinearRgb::WHITE.into(), bounds))
+        let count = self.len() as u32;
+        let (spheres, cones): (Vec<u32>, Vec<u32>) = self.opaque_ids().partition(|id| *id < count);
+        let spheres: Vec<[f32; 4]> = spheres.into_iter().map(|id| self.spheres()[id as usize]).collect();
+        let cones: Vec<ConeInFrame> = cones.into_iter().map(|id| self.cones()[(id - count) as usize]).collect();
+        let scene = Self::in_frame(self.origin, (spheres, cones), LinearRgb::WHITE.into(), None);
+        Some(Self { bounds: scene.shapes.bounds(self.origin), ..scene })
     }
 
-    /// The indices of the opaque spheres, in ascending order.
+    /// The indices of the opaque shapes, in ascending order.
     pub(crate) fn opaque_ids(&self) -> impl Iterator<Item = u32> {
-        (0..self.len() as u32).filter(|id| self.surface(*id).opacity >= 1.0)
+        (0..self.shape_count() as u32).filter(|id| self.surface(*id).opacity >= 1.0)
     }
 
     /// Restores a scene from its parts, to the bit, except that the bounds are computed from the f32 numbers.

@@ -18,7 +18,6 @@ use crate::render::RenderSettings;
 use crate::smooth::SmoothPicture;
 use crate::verify::lit::check::LitCheck;
 use crate::verify::lit::forward;
-use crate::verify::lit::upload::OF_CONES;
 use crate::verify::{Checker, Interval, Verdict};
 
 /// The least share of exact pixels in a picture that is proved.
@@ -203,9 +202,6 @@ impl Checker<'_> {
         if let Some(primary) = settings.primary() {
             return self.legal_colors(view, &primary, indices);
         }
-        if !self.knows_light(view, settings) {
-            return vec![None; indices.len()];
-        }
         match forward::inputs(self, view, settings) {
             Some(inputs) => {
                 let mut check = LitCheck::new(self, &inputs);
@@ -216,16 +212,10 @@ impl Checker<'_> {
         }
     }
 
-    /// False for light in a scene with cones, except of smooth pictures, which follow from ids.
-    fn knows_light(&self, view: &View<'_>, settings: &RenderSettings) -> bool {
-        self.scene.cones().is_empty() || !settings.is_random(self.scene, view.camera)
-    }
-
     /// Judges every pixel of a finished picture.
     ///
     /// # Errors
-    /// Returns an error if a picture is not as large as the views together, or has another number of samples, and for a
-    /// picture with light of a scene with cones that is not [smooth](RenderSettings::is_smooth), which is not judged yet.
+    /// Returns an error if a picture is not as large as the views together, or has another number of samples.
     pub fn certify_finished(&self, request: FinishedRequest<'_>) -> Result<FinishedCertificate, WrittenError> {
         let FinishedRequest { views, settings, picture, exact, .. } = request;
         let Some(View { film, .. }) = views.first() else { return Ok(FinishedCertificate::default()) };
@@ -235,9 +225,6 @@ impl Checker<'_> {
             picture.check([film.width() * views.len() as u32, film.height()])?;
         }
         exact.check(size)?;
-        if !views.iter().all(|view| self.knows_light(view, settings)) {
-            return Err(WrittenError::new(OF_CONES));
-        }
         let annotated = request.annotated_by(|_| {});
         let by_intervals = settings.primary().filter(|_| views.len() == 1 && annotated.is_none());
         let legal = by_intervals.map(|primary| self.certify_written(&views[0], &primary, picture)).transpose()?;

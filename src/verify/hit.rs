@@ -5,7 +5,7 @@ use glam::{DVec3, Vec3};
 
 use crate::geometry::cone::ConeInFrame;
 use crate::geometry::math::wide;
-use crate::scene::SceneError;
+use crate::scene::{Scene, SceneError, Shape};
 use crate::verify::cone::LegalConeHits;
 use crate::verify::rounding::{Interval, U};
 use crate::verify::sphere::{Line, Slack, SphereTest};
@@ -151,10 +151,20 @@ pub struct LegalHit {
     pub(super) key: [u32; 8],
 }
 
-/// The key of a sphere. It is none of a cone, whose numbers are finite.
-pub(super) fn key_of_sphere(sphere: [f32; 4]) -> [u32; 8] {
-    let [x, y, z, radius] = sphere.map(f32::to_bits);
-    [x, y, z, radius, u32::MAX, u32::MAX, u32::MAX, u32::MAX]
+/// The shape with an id. `None` without such a shape, as for the ground and for the camera.
+pub(super) fn shape_of(scene: &Scene, id: u32) -> Option<Shape> {
+    ((id as usize) < scene.shape_count()).then(|| scene.shared_shapes().shape(id))
+}
+
+/// The key of a shape. That of a sphere is none of a cone, whose numbers are finite.
+pub(super) fn key_of(shape: Shape) -> [u32; 8] {
+    match shape {
+        Shape::Sphere(sphere) => {
+            let [x, y, z, radius] = sphere.map(f32::to_bits);
+            [x, y, z, radius, u32::MAX, u32::MAX, u32::MAX, u32::MAX]
+        }
+        Shape::Cone(cone) => bytemuck::cast(cone),
+    }
 }
 
 impl LegalHit {
@@ -209,23 +219,25 @@ impl LegalHits {
         self.find_nearer(candidates, line, Slack::default(), |_| false);
     }
 
-    /// Adds the hits that may be nearer than known hits, except of spheres for which `is_left_out` is true.
+    /// Adds the hits that may be nearer than known hits, except of shapes for which `is_left_out` is true.
     pub(super) fn find_nearer(
         &mut self,
         candidates: &Candidates,
         line: &Line,
         slack: Slack,
-        is_left_out: impl Fn([f32; 4]) -> bool,
+        is_left_out: impl Fn(Shape) -> bool,
     ) {
         let moved = slack.across + slack.along;
         candidates.spheres.visit(line, moved, self.limit, |candidate| {
-            if !is_left_out(candidate.shape) {
+            if !is_left_out(Shape::Sphere(candidate.shape)) {
                 self.add(legal_hit(candidate, line, slack));
             }
             self.limit
         });
         candidates.cones.visit(line, moved, self.limit, |candidate| {
-            self.add(legal_cone_hit(candidate, line, slack));
+            if !is_left_out(Shape::Cone(candidate.shape)) {
+                self.add(legal_cone_hit(candidate, line, slack));
+            }
             self.limit
         });
         self.first_cone = candidates.first_cone;
@@ -266,12 +278,12 @@ pub(super) fn legal_hit(
 ) -> Option<(LegalHit, bool)> {
     let test = SphereTest::new(line, *sphere, slack)?;
     let roots = test.roots();
-    let hit = LegalHit { id: *id, near: roots.near, far: roots.far, key: key_of_sphere(*sphere) };
+    let hit = LegalHit { id: *id, near: roots.near, far: roots.far, key: key_of(Shape::Sphere(*sphere)) };
     roots.near.or(roots.far).map(|_| (hit, roots.may_miss))
 }
 
 /// The legal hits of a cone, and whether a miss is legal.
-fn legal_cone_hit(
+pub(super) fn legal_cone_hit(
     Candidate { shape: cone, id }: &Candidate<ConeInFrame>,
     line: &Line,
     slack: Slack,
@@ -283,7 +295,7 @@ fn legal_cone_hit(
     let legal = LegalConeHits::of(line, slack, cone);
     let side = |is_near| legal.distances(is_near).map(|side| side.intersection(within));
     let [near, far] = [true, false].map(|is_near| side(is_near).filter(|side| side.low <= side.high));
-    let hit = LegalHit { id: *id, near, far, key: bytemuck::cast(*cone) };
+    let hit = LegalHit { id: *id, near, far, key: key_of(Shape::Cone(*cone)) };
     near.or(far).map(|_| (hit, legal.may_miss))
 }
 

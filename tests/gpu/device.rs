@@ -213,25 +213,25 @@ fn fences_in_trace(headless: &Headless) -> TestedProperty {
 
 /// Faults of the kernel that tests cones.
 fn wrong_cones(_: &'static Headless) {
-    let (cone, side) = ("scene/cone.wgsl", "scene/cone_side.wgsl");
+    let [cone, crossing, side] = ["scene/cone.wgsl", "scene/cone_crossing.wgsl", "scene/cone_side.wgsl"];
     for (fault, file, find, replace) in [
-        ("a disc that is not there", cone, "let is_open_in = enters_disc &&", "let is_open_in = false &&"),
+        ("a disc that is not there", crossing, "let is_open_in = enters_disc &&", "let is_open_in = false &&"),
         (
             "a closed disc that is left out",
-            cone,
+            crossing,
             "let is_open_out = leaves_disc &&",
             "let is_open_out = leaves_disc ||",
         ),
-        ("the other end's disc", cone, "let is_up = risen > 0.0", "let is_up = risen < 0.0"),
-        ("a rim that is cut off", cone, "let at_end = (seen.half", "let at_end = (0.998 * seen.half"),
+        ("the other end's disc", crossing, "let is_up = risen > 0.0", "let is_up = risen < 0.0"),
+        ("a rim that is cut off", crossing, "let at_end = (seen.half", "let at_end = (0.998 * seen.half"),
         (
             "the radius of the other end",
             side,
             "let first = abs(cone.first_radius)",
             "let first = abs(cone.second_radius)",
         ),
-        ("a slope that points the other way", cone, "outward - seen.slope", "outward + seen.slope"),
-        ("the axis for the normal", cone, "let on_side = select(normal", "let on_side = select(seen.axis"),
+        ("a slope that points the other way", crossing, "outward - seen.slope", "outward + seen.slope"),
+        ("the axis for the normal", crossing, "let on_side = select(normal", "let on_side = select(seen.axis"),
         ("the other half of a cone", side, "select(-FAR, high, opens)", "select(high, -FAR, opens)"),
         ("only the far side", cone, "far, is_far), near, is_near)", "far, is_far), far, is_near)"),
         ("the root of another equation", side, "- side * side)", "- 1.001 * side * side)"),

@@ -33,8 +33,10 @@ pub(crate) fn trials() -> Vec<Trial> {
         let structures = choices.map(|choice| (format!("a_{choice:?}"), choice, 1 << 27));
         let bricks = ("bricks".to_owned(), AccelChoice::List, SMALL_BINDING);
         for (name, choice, binding_bytes) in structures.into_iter().chain([bricks]) {
-            let name = format!("{suite}::legal::in_{name}").to_lowercase();
-            trials.push(Trial::test(name, move || legal_in(suite, choice, binding_bytes)));
+            for view in ["many", "many_rods"] {
+                let name = format!("{suite}::legal::{view}_in_{name}").to_lowercase();
+                trials.push(Trial::test(name, move || legal_in(suite, view, choice, binding_bytes)));
+            }
         }
         for seed in 0..u64::from(tries(seeds)) {
             let name = format!("{suite}::random::seed_{seed}");
@@ -111,11 +113,16 @@ fn legal(view: &View) -> Result<(), Failed> {
 }
 
 /// Recordings are legal with every structure.
-fn legal_in(suite: &str, choice: AccelChoice, binding_bytes: u64) -> Result<(), Failed> {
-    let view = lit_scenes::view(suite, "many");
-    let spheres = view.scene.spheres();
-    let accel = AccelPlan::new(spheres, choice, binding_bytes).build(spheres);
-    is_legal(&certify(&view, &record(headless()?, &view, &accel.into())?))
+fn legal_in(suite: &str, view: &str, choice: AccelChoice, binding_bytes: u64) -> Result<(), Failed> {
+    let view = lit_scenes::view(suite, view);
+    let device = headless()?;
+    let mut structures = view.planned(device, choice);
+    if binding_bytes == SMALL_BINDING {
+        let (spheres, cones) = (view.scene.spheres(), view.scene.cones());
+        let plan = AccelPlan::new(spheres, choice, binding_bytes).with_cones(cones, binding_bytes);
+        structures.accel = plan.bricks(spheres).with_cones(cones).build();
+    }
+    is_legal(&certify(&view, &record(device, &view, &structures)?))
 }
 
 /// Several bricks. Equal spheres are in different bricks.

@@ -10,6 +10,7 @@ use pinhole::scene::material::Material;
 use pinhole::{Appearance, Environment, LinearRgb, Scene, Sphere, SphereArray, SurfaceProperties};
 use pinhole_figure::scene_file::SceneFile;
 
+use crate::support::cones::mixed_shapes;
 use crate::support::random_light::RandomView;
 use crate::support::{View, spheres_of};
 
@@ -33,9 +34,16 @@ pub(crate) fn names_of_files(of: &str, start: &str) -> Vec<String> {
     names
 }
 
-/// All scenes of the folder `light`.
+/// All scenes of the folder `light`, and those with cones.
 pub(crate) fn all() -> impl Iterator<Item = (String, View)> {
-    names_of_files("light", "").into_iter().map(|name| (name.clone(), named(&name)))
+    let with_cones = ["paths", "studio"].into_iter().flat_map(|suite| {
+        ["rods", "many_rods"].map(|name| {
+            let mut view = view(suite, name);
+            view.settings.sampling.samples = 4;
+            (format!("{suite}_{name}"), view)
+        })
+    });
+    names_of_files("light", "").into_iter().map(|name| (name.clone(), named(&name))).chain(with_cones)
 }
 
 /// A scene of the folder `light`.
@@ -69,6 +77,7 @@ pub(crate) fn view(suite: &str, name: &str) -> View {
         ("paths", "own_colors") => own_colors(),
         ("paths", "thrice") => thrice(),
         ("studio", "many") => many_for_studio(),
+        (_, "many_rods") => many_rods(suite),
         _ if name.starts_with("studio_") => named(name),
         _ => read(suite, name).1,
     }
@@ -154,6 +163,32 @@ fn many_for_paths() -> View {
         }
     }
     View { scene: Scene::new(&spheres).unwrap(), ..view }
+}
+
+/// So many cones and cylinders that structures are built, some twice, beside some spheres, with the surfaces of `rods`, but
+/// rougher: what narrow lobes scatter on thin rods has wide bounds, because it follows from where f32 puts a point on them.
+fn many_rods(suite: &str) -> View {
+    let view = view(suite, "rods");
+    let (spheres, mut cones) = mixed_shapes(40, 400, 0.4, 9);
+    cones.extend_from_within(..50);
+    let rougher = |surface: &SurfaceProperties| {
+        let material = match surface.material {
+            Material::Emissive { .. } => return None,
+            Material::Dielectric { ior, attenuation_distance, roughness } => {
+                Material::Dielectric { ior, attenuation_distance, roughness: if roughness > 0.0 { 0.6 } else { 0.0 } }
+            }
+            Material::Conductor { .. } => Material::Conductor { roughness: 0.6 },
+            Material::Lambert { specular, .. } => Material::Lambert { specular, roughness: 0.6 },
+        };
+        Some(SurfaceProperties { material, ..*surface })
+    };
+    let surfaces: Vec<_> = view.scene.appearance().surfaces().iter().filter_map(rougher).collect();
+    let ids = 0..(spheres.len() + cones.len()) as u32;
+    let colors: Vec<[u8; 4]> =
+        ids.clone().map(|id| [60 + (id * 31 % 190) as u8, 120, (id * 57 % 250) as u8, 255]).collect();
+    let indices = ids.map(|id| id * 7 % surfaces.len() as u32).collect();
+    let appearance = Appearance::from(colors).with_surfaces(surfaces, indices);
+    View { scene: Scene::from_shapes(SphereArray::F64(spheres), &cones, appearance).unwrap(), ..view }
 }
 
 /// Many spheres with three copies of each, which have different appearances.

@@ -7,6 +7,12 @@ use pinhole::{LinearRgb, Scene, SphereArray};
 
 /// Cones, cylinders and some spheres in a cube of side 2, with all kinds of ends.
 pub(crate) fn mixed(spheres: usize, cones: usize, size: f64, seed: u64) -> Scene {
+    let (balls, cones) = mixed_shapes(spheres, cones, size, seed);
+    Scene::from_shapes(SphereArray::F64(balls), &cones, LinearRgb::new([0.6, 0.5, 0.4]).unwrap().into()).unwrap()
+}
+
+/// The shapes of such a scene.
+pub(crate) fn mixed_shapes(spheres: usize, cones: usize, size: f64, seed: u64) -> (Vec<[f64; 4]>, Vec<Cone>) {
     let mut random = fastrand::Rng::with_seed(seed);
     let mut place = |reach: f64| [0; 3].map(|_| reach * (2.0 * random.f64() - 1.0));
     let balls: Vec<[f64; 4]> = (0..spheres)
@@ -28,7 +34,7 @@ pub(crate) fn mixed(spheres: usize, cones: usize, size: f64, seed: u64) -> Scene
             cone.with_caps([Caps::Both, Caps::Both, Caps::None, Caps::First, Caps::Second][number % 5])
         })
         .collect();
-    Scene::from_shapes(SphereArray::F64(balls), &cones, LinearRgb::new([0.6, 0.5, 0.4]).unwrap().into()).unwrap()
+    (balls, cones)
 }
 
 /// Short cones crowded in a few places, needles across the whole scene and one large open cylinder around all.

@@ -1,5 +1,5 @@
-//! Random lit scenes: all kinds of materials, lights, skies, grounds and cameras, coincident spheres, and eyes inside
-//! spheres. The same seed gives the same scene.
+//! Random lit scenes: all kinds of materials, lights, skies, grounds and cameras, coincident spheres, eyes inside
+//! spheres, and in two of five scenes cones and cylinders. The same seed gives the same scene.
 
 use std::f64::consts::TAU;
 use std::sync::Arc;
@@ -10,8 +10,10 @@ use pinhole::glam::DVec3;
 use pinhole::light::environment::Environment;
 use pinhole::light::{Ground, Light, LightFrame, LightKind, Sky, SkyLight};
 use pinhole::render::{DepthCue, Integrator, LightSampling, Occlusion, PathTracing, Sampling, Studio};
+use pinhole::scene::cone::{Caps, Cone};
 use pinhole::{
     Appearance, ColorMap, Colors, Film, LinearRgb, Material, PixelFilter, RenderSettings, Scene, Sphere, SphereArray,
+    SurfaceProperties,
 };
 
 /// A scene, its lighting and view, and a description of it in words.
@@ -38,9 +40,12 @@ fn view_with(seed: u64, settings: fn(&mut Random) -> RenderSettings) -> RandomVi
     let spheres = random.spheres();
     let (camera, camera_name) = random.camera(&spheres);
     let settings = settings(&mut random);
+    let mut of_cones = Random(Rng::with_seed(!seed));
+    let cones = if of_cones.chance(0.4) { of_cones.cones(&spheres) } else { Vec::new() };
     let name = format!(
-        "{} spheres, {camera_name}, {} lights, {}",
+        "{} spheres, {} cones, {camera_name}, {} lights, {}",
         spheres.len(),
+        cones.len(),
         settings.lights.len(),
         match settings.sky.light {
             SkyLight::Constant(_) => "a constant sky",
@@ -50,12 +55,19 @@ fn view_with(seed: u64, settings: fn(&mut Random) -> RenderSettings) -> RandomVi
             _ => "another sky",
         }
     );
-    let scene = random.scene(&spheres);
+    let scene = random.scene(&spheres, &cones);
     RandomView { scene, camera, film: Film::new(24, 18).unwrap(), settings, name }
 }
 
 /// Half the side of the cube that contains all centres.
 const SIDE: f64 = 2.0;
+
+/// The colour and the surface of a shape.
+#[derive(Clone, Copy)]
+struct Look {
+    color: LinearRgb,
+    surface: SurfaceProperties,
+}
 
 struct Random(Rng);
 
@@ -124,30 +136,75 @@ impl Random {
         }
     }
 
-    /// A scene of the spheres with their own colours, with bytes and alpha instead, or with numbers and a colour map.
-    fn scene(&mut self, spheres: &[Sphere]) -> Scene {
-        let count = spheres.len();
+    /// A scene of the shapes with their own colours, with bytes and alpha instead, or with numbers and a colour map.
+    fn scene(&mut self, spheres: &[Sphere], cones: &[(Cone, Look)]) -> Scene {
+        let of_spheres = spheres.iter().map(|sphere| Look { color: sphere.color, surface: sphere.surface });
+        let looks: Vec<Look> = of_spheres.chain(cones.iter().map(|(_, look)| *look)).collect();
         let colors = match self.0.u32(0..3) {
-            0 => return Scene::new(spheres).unwrap(),
-            1 => {
+            0 if cones.is_empty() => return Scene::new(spheres).unwrap(),
+            0 | 1 => {
                 let share = if self.chance(0.5) { 0.4 } else { 0.0 };
-                let color = |sphere: &Sphere| {
-                    let [r, g, b] = sphere.color.to_srgb8();
+                let color = |look: &Look| {
+                    let [r, g, b] = look.color.to_srgb8();
                     [r, g, b, if self.chance(share) { self.0.u8(..) } else { 255 }]
                 };
-                Colors::Rgba8(spheres.iter().map(color).collect())
+                Colors::Rgba8(looks.iter().map(color).collect())
             }
             _ => {
                 let table = (0..self.0.usize(1..9)).map(|_| self.color(1.0)).collect();
                 let map = ColorMap::new(table, [-1.0, 2.0]).unwrap();
-                let values = (0..count).map(|_| 4.0 * self.0.f32() - 1.5).collect();
+                let values = looks.iter().map(|_| 4.0 * self.0.f32() - 1.5).collect();
                 Colors::Scalars { values, map }
             }
         };
-        let surfaces = spheres.iter().map(|sphere| sphere.surface).collect();
-        let appearance = Appearance::new(colors).with_surfaces(surfaces, (0..count as u32).collect());
+        let surfaces = looks.iter().map(|look| look.surface).collect();
+        let appearance = Appearance::new(colors).with_surfaces(surfaces, (0..looks.len() as u32).collect());
         let points = spheres.iter().map(|s| [s.center[0], s.center[1], s.center[2], s.radius]);
-        Scene::from_parts(SphereArray::F64(points.collect()), appearance).unwrap()
+        let cones: Vec<Cone> = cones.iter().map(|(cone, _)| *cone).collect();
+        Scene::from_shapes(SphereArray::F64(points.collect()), &cones, appearance).unwrap()
+    }
+
+    /// Cones and cylinders with all kinds of ends: some equal to another or inside of it, some between two spheres, some
+    /// along an axis, needles, discs and tips.
+    fn cones(&mut self, spheres: &[Sphere]) -> Vec<(Cone, Look)> {
+        let count = if self.chance(0.15) { self.0.usize(40..120) } else { self.0.usize(1..12) };
+        let is_matt = self.chance(0.2);
+        let translucent = if self.chance(0.6) { 0.5 } else { 0.0 };
+        let largest = 1.0 / (count as f64).cbrt();
+        let mut cones: Vec<(Cone, Look)> = Vec::new();
+        while cones.len() < count {
+            let start = self.point(SIDE);
+            let (radius, away) = (self.between(0.05, 0.6) * largest, self.direction() * largest);
+            let mut cone = Cone::new(start.to_array(), (start + away).to_array(), [radius, radius]);
+            match self.0.u32(0..8) {
+                0 => cone.radii[1] = 0.0,
+                1 => cone.radii[1] = self.between(0.05, 0.6) * largest,
+                2 => cone.radii = [1e-3 * away.length(); 2],
+                3 => cone.end[self.0.usize(0..3)] += 3.0 * largest,
+                4 => cone.end = (start + 1e-3 * away).to_array(),
+                5 => {
+                    let [one, other] = [0; 2].map(|_| spheres[self.0.usize(0..spheres.len())]);
+                    if DVec3::from(one.center).distance(DVec3::from(other.center)) > 0.0 {
+                        (cone.start, cone.end) = (one.center, other.center);
+                    }
+                }
+                6 if !cones.is_empty() => {
+                    cone = cones[self.0.usize(0..cones.len())].0;
+                    if self.chance(0.5) {
+                        cone.radii = cone.radii.map(|radius| 0.7 * radius);
+                    }
+                }
+                _ => {}
+            }
+            let material = match self.material(is_matt) {
+                Material::Emissive { .. } => Material::default(),
+                material => material,
+            };
+            let surface = SurfaceProperties { material, opacity: self.opacity(translucent) };
+            let caps = [Caps::Both, Caps::Both, Caps::None, Caps::First, Caps::Second][self.0.usize(0..5)];
+            cones.push((cone.with_caps(caps), Look { color: self.color(1.0), surface }));
+        }
+        cones
     }
 
     fn spheres(&mut self) -> Vec<Sphere> {

@@ -264,9 +264,9 @@ mod lit_inputs_tests {
             let view = View::new(random.camera.as_ref(), random.film);
             random.settings.check(&random.scene).unwrap();
             let checker = Checker::new(&random.scene).unwrap();
-            let spheres = random.scene.spheres();
-            let plan = AccelPlan::new(spheres, AccelChoice::List, 1 << 27);
-            let (min, max) = plan.build(spheres).bounds();
+            let (spheres, cones) = (random.scene.spheres(), random.scene.cones());
+            let plan = AccelPlan::new(spheres, AccelChoice::List, 1 << 27).with_cones(cones, 1 << 27);
+            let (min, max) = plan.bricks(spheres).with_cones(cones).bounds();
             let space = SceneSpace { origin: random.scene.origin(), min, max };
             let summary = SceneSummary::of(&random.scene);
             let lighting = LightingData::new(&random.settings, &summary, view.camera);

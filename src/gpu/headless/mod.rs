@@ -150,13 +150,11 @@ impl Headless {
         &self.info
     }
 
-    /// Why the CPU reference should follow the random rays of a picture in the place of this device: devices do not light
-    /// cones and cylinders, and software devices are slower; the reference takes 0.2 to 0.8 of the time of lavapipe. `None`
-    /// if it should not.
+    /// Why the CPU reference should follow the random rays of a picture in the place of this device: software devices are
+    /// slower; the reference takes 0.2 to 0.8 of the time of lavapipe. `None` if it should not.
     #[must_use]
     pub fn reason_for_cpu(&self, scene: &Scene, camera: &dyn Camera, settings: &RenderSettings) -> Option<String> {
         match settings.is_random(scene, camera) {
-            true if !scene.cones().is_empty() => Some("devices do not light cylinders and cones yet".to_owned()),
             true if self.info.device_type == DeviceType::Cpu => Some(format!("{} is slower", self.info.name)),
             _ => None,
         }

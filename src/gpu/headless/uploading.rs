@@ -45,7 +45,8 @@ impl Headless {
         let kinds = [accel].into_iter().chain(occluders).map(Accel::structure).collect();
         let watch: &mut UploadWatch<'_> = &mut go_on;
         self.alone(async |_: &mut Renderers| {
-            let of_cones = structures.accel.bricks().iter().filter(|brick| brick.primitive == Primitive::Cone);
+            let bricks = [accel].into_iter().chain(occluders).flat_map(Accel::bricks);
+            let of_cones = bricks.filter(|brick| brick.primitive == Primitive::Cone);
             let renderer = self.layouts_of(kinds, of_cones.map(|brick| brick.kind().structure).collect()).await?;
             let all = self.upload_bricks(&renderer, scene, false, accel.into(), watch, &mut |_, _| {}).await?;
             let Some(accel) = occluders else {
@@ -86,7 +87,8 @@ impl Headless {
         let both = |planned: Structure| [planned, planned.with_nested(true)];
         let structures: Vec<Structure> =
             [accel].into_iter().chain(occluders).flat_map(|plan| both(plan.structure)).collect();
-        let of_cones: Vec<Structure> = accel.cones.into_iter().flat_map(|cones| both(cones.structure)).collect();
+        let of_cones = [accel].into_iter().chain(occluders).filter_map(|plan| plan.cones);
+        let of_cones: Vec<Structure> = of_cones.flat_map(|cones| both(cones.structure)).collect();
         self.alone(async |renderers: &mut Renderers| {
             let renderer = self.layouts_of(structures, of_cones).await?;
             let phase = self.phase("divide");
@@ -101,7 +103,7 @@ impl Headless {
             let Some((plan, opaque)) = occluders.as_ref().zip(scene.opaque()) else {
                 return Ok(all);
             };
-            let bricks = plan.bricks(opaque.spheres()).into();
+            let bricks = plan.bricks(opaque.spheres()).with_cones(opaque.cones()).into();
             let some = self.upload_bricks(&renderer, scene, true, bricks, watch, &mut |_, _| {}).await?;
             Ok(all.with_occluders(some))
         })

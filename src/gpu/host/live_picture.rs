@@ -312,6 +312,9 @@ fn live_key<'a>(
     if !scene.appearance().is_opaque() {
         return Err(GpuError::NotLive { needs: "opaque spheres" });
     }
+    if scene.has_cones() {
+        return Err(GpuError::NotLive { needs: "spheres alone" });
+    }
     let (_, lighting, key) = lit_key(device, scene, view, &few)?;
     let scenes = LitScene { all: scene, occluders: scene, view, settings };
     let needs = "a scene in one brick, a structure that fits into one pass, and at most 32 lights";

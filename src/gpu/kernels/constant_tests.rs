@@ -93,6 +93,7 @@ fn of_the_host() -> Vec<(&'static str, Bits)> {
         ("LEAST_RISE", cone::LEAST_RISE),
         ("LEAST_SQUARE", cone::LEAST_SQUARE),
         ("LEAST_LENGTH", cone::LEAST_LENGTH),
+        ("NOT_ROUND", cone::NOT_ROUND),
         ("PI", std::f32::consts::PI),
         ("QUANTA", accel::ball::QUANTA),
     ];
@@ -140,7 +141,7 @@ const OF_KERNELS_ALONE: &[&str] = &[
     "OTHER_BRICK",
     "HIT_NOTHING",
     "HIT_GROUND",
-    "HIT_SPHERE",
+    "HIT_SHAPE",
 ];
 
 fn bits(module: &Module, expression: Handle<Expression>) -> Bits {

@@ -30,8 +30,9 @@ fn validator(has_ray_queries: bool) -> Validator {
 /// Maximum number of kernel sources. A change may lower it: kernels differ in `override` constants, unless the
 /// difference is a type, a directive or a binding. The last are for lists of tiles,
 /// which have no structure, and for cones: their test, eight searches by lists,
-/// grids and trees and one by tiles with what records or goes on, and the shading of each target.
-const MOST_SOURCES: usize = 105;
+/// grids and trees and one by tiles with what records or goes on, the shading of each target, and light: four searches
+/// by each of four structures, the surfaces of a studio, and scattering under both kinds of sky.
+const MOST_SOURCES: usize = 124;
 
 /// The parts with entry points of render passes.
 const RENDERED: [&str; 3] = ["host/composite.wgsl", "host/cover.wgsl", "host/overlay.wgsl"];

@@ -122,7 +122,7 @@ impl SceneBuffers {
         let Some(opaque) = scene.opaque() else { return Ok(all) };
         let plan = plan_of(device, &opaque);
         let (summary, ids) = (SceneSummary::of_occluders(scene), ShapeIds::of_opaque(scene));
-        let bricks = BrickSource::from(plan.bricks(opaque.spheres()));
+        let bricks = BrickSource::from(plan.bricks(opaque.spheres()).with_cones(opaque.cones()));
         let some = Self::upload(renderer, device, queue, summary, bricks, &ids).await?;
         Ok(all.with_occluders(some))
     }
@@ -209,7 +209,6 @@ impl SceneBuffers {
     pub(crate) fn occluders(&self, settings: &RenderSettings) -> Result<&Self, GpuError> {
         match settings.studio_parameters() {
             Some(_) => self.studio_occluders(),
-            None if self.has_cones() => Err(GpuError::LitCones),
             None => Ok(self),
         }
     }
@@ -217,14 +216,13 @@ impl SceneBuffers {
     /// The buffers of the spheres that can hide lights from surfaces in a studio.
     pub(crate) fn studio_occluders(&self) -> Result<&Self, GpuError> {
         match &self.occluders {
-            _ if self.has_cones() => Err(GpuError::LitCones),
             _ if self.summary.is_opaque() => Ok(self),
             Some(occluders) => Ok(occluders),
             None => Err(GpuError::NoOccluders),
         }
     }
 
-    /// True if there are cones or cylinders, which devices do not light yet.
+    /// True if there are cones or cylinders.
     pub(crate) fn has_cones(&self) -> bool {
         !self.summary.shapes.cones.is_empty()
     }

@@ -74,37 +74,48 @@ impl ExcludeBy {
     }
 }
 
-/// The ids of the spheres of a structure, and how rays exclude the sphere on which they start.
+/// The ids of the shapes of a structure, and how rays exclude the shape on which they start.
 #[derive(Clone, Debug)]
 pub(crate) struct ShapeIds {
-    /// The id of every sphere that the structure was built from; `None` if every sphere's id is its index.
+    /// The id of every shape that the structure was built from; `None` if every shape's id is its index.
     ids: Option<Vec<u32>>,
     pub(crate) exclude_by: ExcludeBy,
 }
 
 impl ShapeIds {
-    /// The ids for a structure of all spheres. Spheres with the same centre may be in different bricks if
-    /// `may_split_duplicates`.
+    /// The ids for a structure of all shapes. Equal ones may be in different bricks if `may_split_duplicates`.
     pub(crate) fn of_all(scene: &Scene, may_split_duplicates: bool) -> Self {
-        // If equal spheres are always in the same brick, their indices in the structure suffice.
-        let duplicates = may_split_duplicates.then(|| Duplicates::of(scene.spheres()));
-        let ids = duplicates.and_then(Duplicates::into_firsts);
+        // If equal shapes are always in the same brick, their indices in the structure suffice.
+        let ids = may_split_duplicates.then(|| firsts(scene)).flatten();
         let exclude_by = if ids.is_some() { ExcludeBy::Id } else { ExcludeBy::Index };
         Self { ids, exclude_by }
     }
 
-    /// The ids for a structure of the opaque spheres only: their indices among all spheres.
+    /// The ids for a structure of the opaque shapes only: their indices among all shapes.
     pub(crate) fn of_opaque(scene: &Scene) -> Self {
-        let duplicates = Duplicates::of(scene.spheres());
-        let ids = scene.opaque_ids().map(|id| duplicates.first_of(id)).collect();
-        Self { ids: Some(ids), exclude_by: ExcludeBy::Id }
+        let firsts = firsts(scene);
+        let first_of = |id: u32| firsts.as_ref().map_or(id, |firsts| firsts[id as usize]);
+        Self { ids: Some(scene.opaque_ids().map(first_of).collect()), exclude_by: ExcludeBy::Id }
     }
 
-    /// The ids of spheres with the given indices in the input of the structure.
+    /// The ids of shapes with the given indices in the input of the structure.
     pub(crate) fn of<'a>(&self, numbers: &'a [u32]) -> Cow<'a, [u32]> {
         match &self.ids {
             None => numbers.into(),
             Some(ids) => numbers.iter().map(|number| ids[*number as usize]).collect(),
         }
     }
+}
+
+/// For every shape, the index of the first one equal to it. `None` if there are no equal ones.
+fn firsts(scene: &Scene) -> Option<Vec<u32>> {
+    let of_spheres = Duplicates::of(scene.spheres());
+    let of_cones = Duplicates::of(bytemuck::cast_slice::<_, [f32; 8]>(scene.cones()));
+    let count = scene.len() as u32;
+    let first_of = |id: u32| match id.checked_sub(count) {
+        None => of_spheres.first_of(id),
+        Some(cone) => count + of_cones.first_of(cone),
+    };
+    let has_equals = of_spheres.are_some() || of_cones.are_some();
+    has_equals.then(|| (0..scene.shape_count() as u32).map(first_of).collect())
 }

@@ -1,6 +1,5 @@
 //! Copying the bricks of a scene to a device, one after the other, and their buffers.
 
-use std::borrow::Cow;
 use std::sync::Arc;
 
 use glam::Vec3;
@@ -155,10 +154,7 @@ impl<'a> SceneUpload<'a> {
     pub(crate) async fn brick(&mut self, brick: &Brick) -> Result<(), GpuError> {
         let (renderer, device, queue) = (self.renderer, self.device, self.queue);
         let Self { palette, uploaded, .. } = self;
-        let ids = match brick.primitive {
-            Primitive::Sphere => self.ids.of(&brick.ids),
-            Primitive::Cone => Cow::Borrowed(&brick.ids[..]),
-        };
+        let ids = self.ids.of(&brick.ids);
         let kind = brick.kind();
         let layouts = &renderer.layouts;
         let trace_layout = layouts.brick_like(kind)?;

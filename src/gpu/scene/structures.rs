@@ -9,9 +9,9 @@ use crate::scene::Scene;
 /// from a single structure.
 #[derive(Debug)]
 pub struct Structures {
-    /// The structure of all spheres.
+    /// The structure of all shapes.
     pub accel: Accel,
-    /// The structure of the spheres that cast shadows in a studio, if some spheres do not.
+    /// The structure of the shapes that cast shadows in a studio, if some do not.
     pub occluders: Option<Accel>,
 }
 
@@ -29,7 +29,8 @@ impl RenderPlan {
     pub fn build(&self, scene: &Scene) -> Structures {
         let accel = self.accel.bricks(scene.spheres()).with_cones(scene.cones()).build();
         let occluders = self.occluders.as_ref().zip(self.occluders.as_ref().and(scene.opaque()));
-        let occluders = occluders.map(|(plan, opaque)| plan.build(opaque.spheres()));
+        let occluders =
+            occluders.map(|(plan, opaque)| plan.bricks(opaque.spheres()).with_cones(opaque.cones()).build());
         Structures { accel, occluders }
     }
 
@@ -41,8 +42,9 @@ impl RenderPlan {
         if self.by_tiles {
             return Some(self.accel.structure.choice());
         }
-        let of_spheres = self.occluders.iter().chain([&self.accel]).map(|plan| plan.structure);
-        let planned = of_spheres.chain(self.accel.cones.map(|cones| cones.structure));
+        let plans = self.occluders.iter().chain([&self.accel]);
+        let planned =
+            plans.flat_map(|plan| [plan.structure].into_iter().chain(plan.cones.map(|cones| cones.structure)));
         let others: Vec<AccelChoice> = planned.filter_map(Structure::instead).collect();
         // A tree may suffice for both structures, so it is tried before a list.
         [AccelChoice::Tree, AccelChoice::List].into_iter().find(|other| others.contains(other))

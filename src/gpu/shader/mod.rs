@@ -22,6 +22,6 @@ pub(super) use part::Part;
 pub(super) use part::{VARIANT, variants};
 pub(super) use pipeline::{pipeline, pipeline_with, with_constants};
 pub(super) use primary::{
-    BrickPass, camera_constant, color_target_choice, data_layers_choice, probe_kernel, shade_kernel, structure_choice,
+    BrickPass, camera_constant, color_target_choice, data_layers_choice, lit_choices, probe_kernel, shade_kernel,
     trace_kernel,
 };

@@ -38,13 +38,13 @@ const FILES: &[(&str, &str)] = files! {
         "limit" "mean" "overlay" "picture_depth" "resolve";
     "live": "light" "records" "reproject" "show" "trace" "view";
     "math": "disk" "fence" "luminance" "sampling" "trigonometry" "trigonometry_inverse" "turns" "warp";
-    "path": "accumulate" "address" "advance" "begin_path" "bounce" "bsdf" "by_chance" "choices"
+    "path": "accumulate" "address" "advance" "begin_path" "bounce" "bsdf" "by_chance" "choices" "cone_place"
         "departed_shape" "departure" "dielectric" "direct" "direct_light" "extend" "film_sums" "first_hit" "hit_before"
         "leave" "medium" "microfacet" "noise" "occlude" "queue" "scatter" "scatter_light" "schedule" "seen_light"
-        "start" "state" "surface_point" "vertex" "whole_paths";
+        "sphere_place" "start" "state" "surface_point" "vertex" "whole_paths";
     "primary": "color_target" "data_layers" "denoise" "entry" "hit_before" "hits" "schedule" "shade"
         "shade_entry" "shading" "status" "trace" "trace_tile";
-    "scene": "appearance" "appearance_words" "cone" "cone_side" "emitter" "emitters" "enter" "environment" "frame" "lamp"
+    "scene": "appearance" "appearance_words" "cone" "cone_crossing" "cone_side" "emitter" "emitters" "enter" "environment" "frame" "lamp"
         "lighting" "lighting_records" "material" "recolor" "records" "sky" "sphere";
     "self_test": "arithmetic" "cones" "exact" "loops" "records";
     "studio": "ambient" "ambient_light" "catcher" "faded" "gather" "hidden_light" "hide" "illuminate"

@@ -86,6 +86,15 @@ pub(crate) fn shade_kernel(
         .with([camera_constant(camera)])
 }
 
+/// The choices of kernels of lit pictures: the parts of these shapes, what rays exclude from their search, and the structure.
+pub(crate) fn lit_choices(kind: BrickKind) -> [(&'static str, &'static str); 4] {
+    let (place, excluded) = match kind.primitive {
+        Primitive::Sphere => ("path/sphere_place.wgsl", "excluded-with-light"),
+        Primitive::Cone => ("path/cone_place.wgsl", "excluded"),
+    };
+    [("$shape", primitive_part(kind.primitive)), ("$place", place), ("$excluded", excluded), structure_choice(kind)]
+}
+
 /// The part that provides `Shape`, `intersect` and `shape_normal` for a primitive.
 fn primitive_part(primitive: Primitive) -> &'static str {
     match primitive {

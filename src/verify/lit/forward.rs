@@ -13,10 +13,10 @@ use crate::recording::lighting::{HostLighting, emitter_records, max_surfaces, up
 use crate::recording::lit::{LitInputs, PathState, flag, slot};
 use crate::recording::{NO_HIT, RequestedCamera};
 use crate::render::RenderSettings;
-use crate::scene::Scene;
+use crate::scene::{Scene, Shape};
 use crate::verify::Checker;
 use crate::verify::choices::Choices;
-use crate::verify::hit::LegalHits;
+use crate::verify::hit::{LegalHits, shape_of};
 use crate::verify::lit::certificate::Address;
 use crate::verify::lit::check::LitCheck;
 use crate::verify::lit::film::location;
@@ -56,15 +56,17 @@ pub(crate) fn inputs(checker: &Checker<'_>, view: &View<'_>, settings: &RenderSe
     })
 }
 
-/// The box of the opaque spheres, if there are some and not all are opaque.
+/// The box of the opaque shapes, if there are some and not all are opaque.
 fn box_of_occluders(scene: &Scene) -> Option<[[f32; 3]; 2]> {
     let ids = scene.opaque_ids().filter(|_| !scene.is_opaque());
-    let of_sphere = |id: u32| {
-        let [x, y, z, radius] = scene.spheres()[id as usize];
-        let (center, radius) = (Vec3::new(x, y, z), Vec3::splat(radius.abs()));
-        [center - radius, center + radius]
+    let of_shape = |id: u32| match scene.shared_shapes().shape(id) {
+        Shape::Sphere([x, y, z, radius]) => {
+            let (center, radius) = (Vec3::new(x, y, z), Vec3::splat(radius.abs()));
+            [center - radius, center + radius]
+        }
+        Shape::Cone(cone) => cone.corners().map(|corner| corner.as_vec3()),
     };
-    let [min, max] = ids.map(of_sphere).reduce(|[a, b], [c, d]| [a.min(c), b.max(d)])?;
+    let [min, max] = ids.map(of_shape).reduce(|[a, b], [c, d]| [a.min(c), b.max(d)])?;
     Some(expected_box(min, max).map(|corner| corner.to_array()))
 }
 
@@ -148,9 +150,10 @@ impl LitCheck<'_> {
     pub(crate) fn next_hits(&self, state: &RayState) -> Option<Vec<RayHit>> {
         let entry = Entry::aimed(self.corners(), state.vector(slot::ORIGIN), state.vector(slot::DIRECTION))?;
         let id = state.raw.departure().id;
-        let departed = self.checker.scene.spheres().get(id as usize).copied();
-        let is_inside = departed.is_some() && state.has(flag::INSIDE);
-        let own = is_inside.then(|| (id, state.number_at([slot::DEPARTURE, 2]).interval()));
+        let departed = shape_of(self.checker.scene, id);
+        let far_side = state.number_at([slot::DEPARTURE, 2]).interval();
+        let is_inside = departed.is_some() && state.has(flag::INSIDE) && far_side.low < NO_HIT.into();
+        let own = is_inside.then_some((id, far_side));
         let mut legal = LegalHits::default();
         entry.find(&self.checker.candidates, departed, own, &mut legal);
         let Interval { low, high } = entry.enter;

@@ -1,15 +1,19 @@
 //! One invocation of a shading kernel, followed number by number from its input to its legal output, and the place
-//! where its ray hits a sphere or the ground. The WGSL twin is `shaders/path/vertex.wgsl`.
+//! where its ray hits a shape or the ground. The WGSL twins are `shaders/path/vertex.wgsl` and
+//! `sphere_place.wgsl`.
 
 use glam::DVec3;
 
 use crate::camera::sampling::{pair, pixel_seed};
+use crate::geometry::cone::ConeInFrame;
 use crate::geometry::math::wide;
 use crate::image::NO_ID;
 use crate::recording::NO_HIT;
 use crate::recording::lit::{LitInputs, PathState, UploadedLighting, flag, slot};
-use crate::scene::Scene;
+use crate::scene::{Scene, Shape};
 use crate::verify::choices::Choices;
+use crate::verify::cone::{AnyRay, Crossing, NOT_ROUND};
+use crate::verify::hit::shape_of;
 use crate::verify::lit::certificate::{Address, LitStage};
 use crate::verify::lit::judge::{Judge, Mismatch, Name};
 use crate::verify::number::{Number, Vector};
@@ -197,12 +201,14 @@ pub(crate) struct Vertex {
     pub(crate) position: Vector,
     /// Unit normal on the visible side.
     pub(crate) normal: Vector,
-    /// Whether the visible side is the inside of a sphere.
+    /// Whether the visible side is the inside of a shape.
     pub(crate) is_back: bool,
     /// Distance along the ray.
     pub(crate) distance: Number,
-    /// Centre and radius of the sphere. The radius is 0 for the ground.
+    /// Centre and radius of the sphere. The radius is 0 for the ground, and [`NOT_ROUND`] for a cone.
     pub(crate) sphere: [f32; 4],
+    /// The cone, if it is one.
+    pub(crate) cone: Option<ConeInFrame>,
     pub(crate) color: [f32; 3],
     /// Index of the material. The ground has the first material.
     pub(crate) material_index: u32,
@@ -211,16 +217,30 @@ pub(crate) struct Vertex {
 }
 
 impl Vertex {
-    pub(crate) fn is_sphere(&self) -> bool {
+    /// True if it is not the ground.
+    pub(crate) fn is_shape(&self) -> bool {
         self.sphere[3] > 0.0
     }
 
-    /// The distance from a point of a sphere through its inside to the far side; 0 if the direction points outwards.
-    pub(crate) fn exit_distance(&self, direction: Vector) -> Number {
+    /// The distance from a point of a shape through its inside to the far side: `exit_distance_of`.
+    pub(crate) fn exit_distance(&self, direction: Vector, choices: &mut Choices) -> Number {
+        if let Some(cone) = &self.cone {
+            let ray = AnyRay { origin: self.position, direction, moved: Number::ZERO };
+            return Crossing::new(&ray, cone, choices).far_side();
+        }
         let [x, y, z, _] = self.sphere;
         let to_center = Vector::recorded([x, y, z]) - self.position;
         (Number::TWO * to_center.dot(direction)).max(Number::ZERO)
     }
+}
+
+/// Where a ray hits a shape.
+pub(super) struct Place {
+    pub(super) position: Vector,
+    /// Unit normal, which points out of the shape.
+    pub(super) outward: Vector,
+    /// Whether the ray hits the inside.
+    pub(super) is_back: bool,
 }
 
 const HIT: Name = (LitStage::Vertex, "the hit");
@@ -231,17 +251,17 @@ impl Kernel<'_> {
     pub(crate) fn vertex(&mut self) -> Result<Option<Vertex>, Mismatch> {
         let (before, hit) = (self.before, self.hit);
         let (origin, direction) = (before.vector(slot::ORIGIN), before.vector(slot::DIRECTION));
-        // A camera ray starts at the box of the spheres, and may have crossed the ground before.
+        // A camera ray starts at the box of the shapes, and may have crossed the ground before.
         let behind = if self.address.surface == 0 { before.number(slot::FIRST) } else { Number::ZERO };
         let ground = if before.has(flag::ON_GROUND) { None } else { self.ground_distance(origin, direction, behind) };
-        let has_sphere = hit.id != NO_ID;
-        let to_sphere = if has_sphere { hit.distance + hit.t } else { Number::known(NO_HIT.into()) };
+        let has_shape = hit.id != NO_ID;
+        let to_shape = if has_shape { hit.distance + hit.t } else { Number::known(NO_HIT.into()) };
         if let Some(distance) = ground
-            && self.choices.decide(distance.is_less(to_sphere))
+            && self.choices.decide(distance.is_less(to_shape))
         {
             return self.ground_vertex(origin, direction, distance).map(Some);
         }
-        if has_sphere { self.sphere_vertex(to_sphere).map(Some) } else { Ok(None) }
+        if has_shape { self.shape_vertex(to_shape).map(Some) } else { Ok(None) }
     }
 
     /// The distance at which a ray hits the ground from above. It may be negative, down to −`behind`.
@@ -262,7 +282,7 @@ impl Kernel<'_> {
     }
 
     /// Writes the point, and returns it. If it was recorded, it is exact from then on.
-    fn at(&mut self, position: Vector, size: f64) -> Result<Vector, Mismatch> {
+    pub(super) fn at(&mut self, position: Vector, size: f64) -> Result<Vector, Mismatch> {
         self.write(POSITION, slot::ORIGIN, position, size)?;
         Ok(self.recorded(slot::ORIGIN).unwrap_or_else(|| position.fence()))
     }
@@ -281,31 +301,47 @@ impl Kernel<'_> {
             is_back: false,
             distance,
             sphere: [0.0; 4],
+            cone: None,
             color: lighting.ground_color,
             material_index: 0,
             opacities: [1.0; 2],
         })
     }
 
-    fn sphere_vertex(&mut self, distance: Number) -> Result<Vertex, Mismatch> {
-        let (before, hit) = (self.before, self.hit);
-        let Some(sphere @ [x, y, z, radius]) = self.scene.spheres().get(hit.id as usize).copied() else {
-            return Err(self.judge.fail(HIT, format!("there is no sphere {}", hit.id)));
+    fn shape_vertex(&mut self, distance: Number) -> Result<Vertex, Mismatch> {
+        let hit = self.hit;
+        let Some(shape) = shape_of(self.scene, hit.id) else {
+            return Err(self.judge.fail(HIT, format!("there is no shape {}", hit.id)));
+        };
+        let (Place { position, outward, is_back }, sphere, cone) = match shape {
+            Shape::Sphere(sphere) => (self.place_on_sphere(sphere)?, sphere, None),
+            Shape::Cone(cone) => (self.place_on_cone(&cone)?, [0.0, 0.0, 0.0, NOT_ROUND], Some(cone)),
         };
         let appearance = self.scene.checked_appearance();
-        let material_index = appearance.material_row(hit.id) + 1;
         let surface = appearance.surfaces()[appearance.surface_index(hit.id) as usize];
-        let color = self.scene.color(hit.id).to_array();
-        let opacities = [surface.opacity, appearance.alpha(hit.id)];
+        Ok(Vertex {
+            position,
+            normal: if is_back { -outward } else { outward },
+            is_back,
+            distance,
+            sphere,
+            cone,
+            color: self.scene.color(hit.id).to_array(),
+            material_index: appearance.material_row(hit.id) + 1,
+            opacities: [surface.opacity, appearance.alpha(hit.id)],
+        })
+    }
 
+    fn place_on_sphere(&mut self, sphere: [f32; 4]) -> Result<Place, Mismatch> {
+        let (before, hit, [x, y, z, radius]) = (self.before, self.hit, sphere);
         let direction = before.vector(slot::DIRECTION);
-        let (line, origin, slack) = entered(before.vector(slot::ORIGIN), direction, hit.distance);
+        let (line, origin, slack) = self.entered();
         let Some(test) = SphereTest::new(&line, sphere, slack) else {
             return Err(self.judge.fail(HIT, format!("sphere {} cannot be hit", hit.id)));
         };
         let center = Vector::recorded([x, y, z]);
         let middle = (center - origin).dot(direction);
-        let is_far_side = before.has(flag::INSIDE) && hit.id == before.raw.departure().id;
+        let is_far_side = self.is_far_side();
         let (half, exact) = if is_far_side {
             let exact = (wide([x, y, z]) - line.origin).dot(line.direction).abs();
             (middle.abs().interval(), exact)
@@ -326,9 +362,12 @@ impl Kernel<'_> {
             outward = self.normal_by_point(outward, position, sphere)?;
         }
         let is_back = self.choices.decide(outward.dot(direction).is_above_zero());
-        let normal = if is_back { -outward } else { outward };
-        let sphere = [x, y, z, radius];
-        Ok(Vertex { position, normal, is_back, distance, sphere, color, material_index, opacities })
+        Ok(Place { position, outward, is_back })
+    }
+
+    /// Whether the hit is the far side of the shape on which the ray starts.
+    pub(super) fn is_far_side(&self) -> bool {
+        self.before.has(flag::INSIDE) && self.hit.id == self.before.raw.departure().id
     }
 
     /// The normal, narrowed by means of the point on the sphere that was computed from it.
@@ -353,6 +392,12 @@ impl Kernel<'_> {
             Number::between((away - error) / r, (away + error) / r)
         });
         Ok(outward.zip(Vector(by_point), Number::narrowed))
+    }
+
+    /// The ray, from where it enters the scene's box: its line, its start, and the maximum difference of the kernel's ray.
+    pub(super) fn entered(&self) -> (Line, Vector, Slack) {
+        let before = self.before;
+        entered(before.vector(slot::ORIGIN), before.vector(slot::DIRECTION), self.hit.distance)
     }
 }
 

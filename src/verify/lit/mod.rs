@@ -9,6 +9,7 @@
 
 pub(crate) mod certificate;
 pub(super) mod check;
+mod cone_place;
 pub(super) mod film;
 pub(super) mod forward;
 pub(super) mod judge;

@@ -7,9 +7,12 @@ use glam::{DVec3, Vec4};
 use crate::image::NO_ID;
 use crate::recording::NO_HIT;
 use crate::recording::lit::{Departure, NO_EMITTER, PathState, flag, slot};
+use crate::scene::Shape;
 use crate::verify::camera::{CameraModel, CameraRay, EnteredRay};
+use crate::verify::certificate::shape_name;
 use crate::verify::checker::Checker;
-use crate::verify::hit::{Candidates, LegalHit, LegalHits, key_of_sphere, legal_hit};
+use crate::verify::cone::legal_far_side;
+use crate::verify::hit::{Candidates, LegalHit, LegalHits, key_of, legal_cone_hit, legal_hit, shape_of};
 use crate::verify::lit::certificate::LitStage;
 use crate::verify::lit::check::LitCheck;
 use crate::verify::lit::judge::{Judge, Mismatch, Name, StageResult, searched};
@@ -17,7 +20,6 @@ use crate::verify::lit::kernel::Hit;
 use crate::verify::number::Number;
 use crate::verify::rounding::{FLUSH, Interval, PAD, gamma};
 use crate::verify::sphere::{Line, Slack};
-use crate::verify::tree::Candidate;
 
 const STAGE: LitStage = LitStage::Extend;
 
@@ -50,12 +52,12 @@ impl Entry {
         Self { line, slack, enter, may_hit_box, may_miss_box }
     }
 
-    /// Finds the legal hits of a ray that leaves a sphere. If it goes through the inside, `own` is the sphere's id and the
-    /// distance to its far side.
+    /// Finds the legal hits of a ray that leaves a shape. If it goes through the inside to a far side, `own` is the shape's id
+    /// and the distance to that side.
     pub(crate) fn find(
         &self,
         candidates: &Candidates,
-        departed: Option<[f32; 4]>,
+        departed: Option<Shape>,
         own: Option<(u32, Interval)>,
         legal: &mut LegalHits,
     ) {
@@ -64,23 +66,23 @@ impl Entry {
             (legal.miss, legal.limit) = (false, far_side.high);
         }
         if self.may_hit_box {
-            let is_departed = |sphere| departed.is_some_and(|own| is_same(sphere, own));
+            let is_departed = |shape| departed.is_some_and(|own| is_same(shape, own));
             legal.find_nearer(candidates, &self.line, self.slack, is_departed);
             legal.miss |= self.may_miss_box && own.is_none();
         }
-        if let (Some((id, far_side)), Some(sphere)) = (own, departed)
+        if let (Some((id, far_side)), Some(shape)) = (own, departed)
             && far_side.low <= legal.limit
         {
-            legal.spheres.push(LegalHit { id, near: None, far: Some(far_side), key: key_of_sphere(sphere) });
+            legal.spheres.push(LegalHit { id, near: None, far: Some(far_side), key: key_of(shape) });
         }
     }
 
-    /// Whether spheres hide a light at a distance from the ray's origin.
+    /// Whether shapes hide a light at a distance from the ray's origin.
     pub(crate) fn hidden(
         &self,
         candidates: &Candidates,
         distance: Number,
-        is_exempt: impl Fn(&Candidate<[f32; 4]>) -> bool,
+        role_of: impl Fn(u32, Shape) -> Role,
     ) -> Obstacle {
         let Self { line, slack, enter, may_hit_box, may_miss_box } = self;
         let rest = (distance - Number::between(enter.low, enter.high)).interval();
@@ -88,20 +90,42 @@ impl Entry {
         if !may_hit_box || rest.high <= 0.0 {
             return found;
         }
+        let doubt = |id: u32, found: &mut Obstacle, [may, must]: [bool; 2], why: &dyn Fn() -> String| {
+            found.may |= may;
+            found.must |= must;
+            if may && !must {
+                found.doubts.add(|| format!("{}, {}", shape_name(candidates.first_cone, id), why()));
+            }
+        };
+        let ends = || "which ends where the search does".to_owned();
         candidates.spheres.visit(line, slack.across + slack.along, rest.high, |candidate| {
-            if is_exempt(candidate) {
+            let (id, sphere) = (candidate.id, candidate.shape);
+            if role_of(id, Shape::Sphere(sphere)) != Role::Occluder {
                 return rest.high;
             }
             if let Some((hit, may_miss)) = legal_hit(candidate, line, *slack) {
-                let may = hit.lowest() < rest.high;
-                let must = !may_miss && hit.highest() < rest.low;
-                found.may |= may;
-                found.must |= must;
-                if may && !must {
-                    found.doubts.add(candidate, line, may_miss);
-                }
+                let answer = [hit.lowest() < rest.high, !may_miss && hit.highest() < rest.low];
+                let beside = || format!("{:.1e} of its radius beside its silhouette", line.beside_silhouette(sphere));
+                doubt(id, &mut found, answer, if may_miss { &beside } else { &ends });
             }
             // A certain answer ends the search.
+            if found.must { -1.0 } else { rest.high }
+        });
+        candidates.cones.visit(line, slack.across + slack.along, rest.high, |candidate| {
+            let role = role_of(candidate.id, Shape::Cone(candidate.shape));
+            if role == Role::Exempt || found.must {
+                return rest.high;
+            }
+            if let Some((hit, may_miss)) = legal_cone_hit(candidate, line, *slack) {
+                let [mut may, mut must] = [hit.lowest() < rest.high, !may_miss && hit.highest() < rest.low];
+                if role == Role::FarSide {
+                    let (far, is_open) = legal_far_side(line, *slack, &candidate.shape);
+                    may &= far.is_some_and(|far| far.low < rest.high);
+                    must &= !is_open && far.is_some_and(|far| far.high < rest.low);
+                }
+                let beside = || "beside its silhouette".to_owned();
+                doubt(candidate.id, &mut found, [may, must], if may_miss { &beside } else { &ends });
+            }
             if found.must { -1.0 } else { rest.high }
         });
         found.must &= !may_miss_box && rest.low > 0.0;
@@ -109,12 +133,22 @@ impl Entry {
     }
 }
 
+/// How a shape takes part in the search for what hides a light.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) enum Role {
+    /// The ray starts or ends on it, or light passes through it.
+    Exempt,
+    /// The ray starts inside it, and the search finds its far side alone.
+    FarSide,
+    Occluder,
+}
+
 /// Whether an obstacle may hide the light, and whether one must.
 #[derive(Clone, Debug, PartialEq)]
 pub(crate) struct Obstacle {
     pub(crate) may: bool,
     pub(crate) must: bool,
-    /// The spheres that may hide the light but need not.
+    /// The shapes that may hide the light but need not.
     pub(crate) doubts: Doubts,
 }
 
@@ -128,10 +162,15 @@ impl Obstacle {
     }
 }
 
-/// Whether a sphere equals the sphere that a ray leaves or ends on. They are compared by value, because
-/// the sign of a zero does not matter.
-pub(crate) fn is_same([x, y, z, radius]: [f32; 4], other: [f32; 4]) -> bool {
-    Vec4::new(x, y, z, radius.abs()) == Vec4::from(other)
+/// Whether a shape equals the shape that a ray leaves or ends on. They are compared by value, because the sign of a zero does
+/// not matter.
+pub(crate) fn is_same(shape: Shape, other: Shape) -> bool {
+    match (shape, other) {
+        (Shape::Sphere([x, y, z, radius]), Shape::Sphere(other)) => {
+            Vec4::new(x, y, z, radius.abs()) == Vec4::from(other)
+        }
+        (shape, other) => shape == other,
+    }
 }
 
 /// Judges the nearest hit of a ray. `last` is the previous hit of the path.
@@ -147,10 +186,11 @@ pub(crate) fn check_hit(
     let (origin, direction) = (state.vector(slot::ORIGIN), state.vector(slot::DIRECTION));
     let entry = Entry::new(model, origin, direction, (id != NO_ID).then_some(distance));
     let departure = state.departure();
-    let departed = scene.spheres().get(departure.id as usize).copied();
+    let departed = shape_of(scene, departure.id);
     // The exit distance was compared when the path was scattered, and is known exactly.
     let far_side = f64::from(departure.exit_distance);
-    let own = last.filter(|_| departed.is_some() && state.has(flag::INSIDE));
+    let is_left_inside = departed.is_some() && state.has(flag::INSIDE) && departure.exit_distance < NO_HIT;
+    let own = last.filter(|_| is_left_inside);
     let far_side = Interval { low: far_side, high: far_side };
     entry.find(candidates, departed, own.map(|last| (last.id, far_side)), legal);
     let is_open = legal.count() > 1;
@@ -166,7 +206,7 @@ pub(crate) fn check_hit(
         };
     }
     if !legal.allows(id, t.into()) {
-        return fail("the hit", format!("sphere {id} at {t:?}; legal is {legal}"));
+        return fail("the hit", legal.message(id, t));
     }
     let Interval { low, high } = entry.enter;
     let enter = match own {
@@ -180,7 +220,7 @@ pub(crate) fn check_hit(
     Ok(searched(is_open, || legal.alternatives()))
 }
 
-/// Whether spheres hide the sampled light of a path, other than the sphere that it leaves and the one that shines.
+/// Whether shapes hide the sampled light of a path, other than the shape that it leaves and the one that shines.
 pub(crate) fn hidden_from_path(
     LitCheck { checker: Checker { scene, candidates }, inputs, .. }: &LitCheck<'_>,
     state: &PathState,
@@ -188,14 +228,14 @@ pub(crate) fn hidden_from_path(
     distance: Number,
 ) -> Obstacle {
     let Departure { id, emitter, .. } = state.departure();
-    let departed = scene.spheres().get(id as usize).copied();
+    let departed = shape_of(scene, id);
     let sphere_of_light = (emitter != NO_EMITTER)
         .then(|| inputs.emitters.get((emitter as usize).saturating_mul(3)))
         .flatten()
-        .map(|sphere| sphere.map(f32::from_bits));
+        .map(|sphere| Shape::Sphere(sphere.map(f32::from_bits)));
     let exempt = [departed, sphere_of_light];
-    entry
-        .hidden(candidates, distance, |candidate| exempt.into_iter().flatten().any(|own| is_same(candidate.shape, own)))
+    let is_exempt = |shape| exempt.into_iter().flatten().any(|own| is_same(shape, own));
+    entry.hidden(candidates, distance, |_, shape| if is_exempt(shape) { Role::Exempt } else { Role::Occluder })
 }
 
 pub(crate) const OPEN: Name = (LitStage::Occlude, "the visibility of the light");
@@ -231,8 +271,8 @@ impl LegalHits {
             // Written like the f32 beside them, because a device gives only f32.
             let [low, high] = hit.crossings().next().map_or([0.0; 2], |at| [at.low as f32, at.high as f32]);
             match low < high {
-                true => format!("sphere {} at {low:?} to {high:?}", hit.id),
-                false => format!("sphere {} at {low:?}", hit.id),
+                true => format!("{} at {low:?} to {high:?}", shape_name(self.first_cone, hit.id)),
+                false => format!("{} at {low:?}", shape_name(self.first_cone, hit.id)),
             }
         };
         let nearest = hits.iter().take(MOST - usize::from(self.miss));
@@ -244,23 +284,17 @@ impl LegalHits {
     }
 }
 
-/// The spheres that may hide a light but need not.
+/// The shapes that may hide a light but need not.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub(crate) struct Doubts(Vec<String>);
 
 impl Doubts {
     pub(crate) const NONE: Self = Self(Vec::new());
 
-    /// Adds a sphere that the ray may miss, or else whose surface may be behind the light.
-    pub(crate) fn add(&mut self, Candidate { shape: sphere, id }: &Candidate<[f32; 4]>, line: &Line, may_miss: bool) {
+    /// Adds a shape, in words.
+    fn add(&mut self, words: impl FnOnce() -> String) {
         if self.0.len() < MOST {
-            self.0.push(match may_miss {
-                true => {
-                    let beside = line.beside_silhouette(*sphere);
-                    format!("sphere {id}, {beside:.1e} of its radius beside its silhouette")
-                }
-                false => format!("sphere {id}, which ends where the search does"),
-            });
+            self.0.push(words());
         }
     }
 
@@ -324,20 +358,25 @@ mod tests {
 
     #[test]
     fn doubts_say_how_near_a_silhouette_is() {
-        let line = Line::new([0.0; 3], [0.0, 0.0, 1.0]);
-        let touched = Candidate { shape: [2.0, 0.0, 5.0, 2.0 + 1e-6], id: 77 };
-        let mut doubts = Doubts::NONE;
-        doubts.add(&touched, &line, true);
-        doubts.add(&Candidate { id: 5, ..touched }, &line, false);
-        let words = [
-            "hidden or not: sphere 77, 4.8e-7 of its radius beside its silhouette",
-            "hidden or not: sphere 5, which ends where the search does",
-        ];
-        assert_eq!(doubts.alternatives(), words);
+        let entry = Entry {
+            line: Line::new([0.0; 3], [0.0, 0.0, 1.0]),
+            slack: Slack::default(),
+            enter: Interval::ZERO,
+            may_hit_box: true,
+            may_miss_box: false,
+        };
+        let hidden = |sphere: [f32; 4], distance: f32| {
+            let candidates = Candidates::new(&[sphere], &[]).unwrap();
+            entry.hidden(&candidates, Number::recorded(distance), |_, _| Role::Occluder).doubts
+        };
+        let doubts = hidden([2.0, 0.0, 5.0, 2.0 + 1e-6], 9.0);
+        assert_eq!(doubts.alternatives(), ["hidden or not: sphere 0, 4.8e-7 of its radius beside its silhouette"]);
+        let at_end = hidden([0.0, 0.0, 5.0, 1.0], 4.0).alternatives();
+        assert_eq!(at_end, ["hidden or not: sphere 0, which ends where the search does"]);
         // The same doubt counts once, and at most four doubts are kept.
         assert_eq!(doubts.clone().and(doubts.clone()), doubts);
         let mut others = Doubts::NONE;
-        (0..9).for_each(|id| others.add(&Candidate { id, ..touched }, &line, false));
+        (0..9).for_each(|id| others.add(|| format!("sphere {id}")));
         assert_eq!(others.alternatives().len(), 4);
         assert_eq!(doubts.and(others).alternatives().len(), 4);
         assert_eq!(Doubts::NONE.alternatives().len(), 1);

@@ -13,22 +13,15 @@ use crate::light::{LightKind, SkyLight, codes};
 use crate::recording::lit::{LitInputs, UploadedLighting, flag};
 use crate::recording::{NO_HIT, UploadError};
 use crate::render::{DepthCue, Integrator, LightSampling, Occlusion, PathTracing, Studio};
-use crate::scene::Scene;
 use crate::scene::material::{Material, SurfaceProperties};
+use crate::scene::{Scene, Shape};
 use crate::verify::hit::Candidates;
 use crate::verify::lit::sampling::ENERGIES;
 use crate::verify::rounding::{FLUSH, U, are_near, is_near};
 use crate::verify::uploaded::{LEAST_MARGIN, check_view};
 
-/// Why light is not judged in scenes with cones.
-pub(crate) const OF_CONES: &str = "pictures with light of scenes with cones or cylinders cannot be checked yet; check a \
-                                   picture by primary rays, with a flat or headlight shading";
-
 /// Compares the recording with the scene and the settings.
 pub(crate) fn check(scene: &Scene, candidates: &Candidates, inputs: &LitInputs) -> Result<(), UploadError> {
-    if !scene.cones().is_empty() {
-        return Err(UploadError(OF_CONES.to_owned()));
-    }
     check_view(scene, candidates, &inputs.camera, &inputs.uploaded)?;
     check_lighting(scene, inputs)?;
     check_tables(scene, inputs)
@@ -132,18 +125,20 @@ fn check_studio(studio: &Studio, scene: &Scene, inputs: &LitInputs) -> Result<()
     ])
 }
 
-/// Checks that the box to which the origins of shadow rays are moved contains the spheres that cast shadows.
+/// Checks that the box to which the origins of shadow rays are moved contains the shapes that cast shadows.
 fn check_occluders(scene: &Scene, inputs: &LitInputs) -> Result<(), UploadError> {
     let [low, high] = inputs.occluders.map(wide);
     let margin = LEAST_MARGIN * (high - low).length();
-    let holds = |[x, y, z, radius]: [f32; 4]| {
-        let (center, radius) = (wide([x, y, z]), f64::from(radius.abs()));
-        (low + margin).cmple(center - radius).all() && (high - margin).cmpge(center + radius).all()
+    let corners = |id: u32| match scene.shared_shapes().shape(id) {
+        Shape::Sphere([x, y, z, radius]) => {
+            let (center, radius) = (wide([x, y, z]), f64::from(radius.abs()));
+            [center - radius, center + radius]
+        }
+        Shape::Cone(cone) => cone.corners(),
     };
-    first_wrong(&[(
-        "the box of the spheres that cast shadows",
-        scene.opaque_ids().all(|id| holds(scene.spheres()[id as usize])),
-    )])
+    let holds = |[first, last]: [DVec3; 2]| (low + margin).cmple(first).all() && (high - margin).cmpge(last).all();
+    let are_held = scene.opaque_ids().all(|id| holds(corners(id)));
+    first_wrong(&[("the box of the shapes that cast shadows", are_held)])
 }
 
 fn is_sky(LitInputs { settings, lighting, sky, .. }: &LitInputs) -> bool {

@@ -162,7 +162,7 @@ impl LitCheck<'_> {
             sampled = larger(sampled, radiance.map(|c| 2.0 * c * sources / probability.max(f64::MIN_POSITIVE)));
         }
         let mut own = [0.0; 3];
-        for id in 0..scene.len() as u32 {
+        for id in 0..scene.shape_count() as u32 {
             let color = scene.color(id).to_array();
             match scene.surface(id).material {
                 Material::Emissive { strength } => {

@@ -24,8 +24,8 @@ const ORIGIN: Name = (LitStage::Vertex, "the origin of the next ray");
 const DIRECTION: Name = (LitStage::Scatter, "the direction of the next ray");
 const DENSITY: Name = (LitStage::Scatter, "the density of the next direction");
 const FLAGS: Name = (LitStage::Scatter, "the path's flags");
-const DEPARTURE: Name = (LitStage::Vertex, "the sphere that the path leaves");
-const EXIT_DISTANCE: Name = (LitStage::Scatter, "the exit distance of the sphere that the path leaves");
+const DEPARTURE: Name = (LitStage::Vertex, "the shape that the path leaves");
+const EXIT_DISTANCE: Name = (LitStage::Scatter, "the exit distance of the shape that the path leaves");
 const THROUGHPUT: Name = (LitStage::Scatter, "the path's throughput");
 const RADIANCE: Name = (LitStage::Radiance, "the path's radiance");
 const ALPHA: Name = (LitStage::Radiance, "the path's opacity");
@@ -101,22 +101,24 @@ impl Kernel<'_> {
         self.choices.decide((!is_open).then_some(pass >= opacity))
     }
 
-    /// Writes the sphere that the path leaves.
+    /// Writes the shape that the path leaves.
     fn write_departure(&mut self, at: &Vertex) -> Result<(), Mismatch> {
-        let (id, shape_index) = if at.is_sphere() { (self.hit.id, self.hit.shape_index) } else { (NO_ID, 0) };
+        let (id, shape_index) = if at.is_shape() { (self.hit.id, self.hit.shape_index) } else { (NO_ID, 0) };
         self.write_bits(DEPARTURE, [slot::DEPARTURE, 0], id)?;
         self.write_bits(DEPARTURE, [slot::DEPARTURE, 1], shape_index)
     }
 
-    /// Writes the exit distance of the sphere that the path leaves, along the next ray.
+    /// Writes the exit distance of the shape that the path leaves, along the next ray.
     fn write_exit_distance(&mut self, at: &Vertex) -> Result<(), Mismatch> {
         let (flags, direction) = match &self.after {
             Output::Recorded(after) => (after.flags(), Vector::recorded(after.vector(slot::DIRECTION))),
             Output::Legal(after) => (after.raw.flags(), after.vector(slot::DIRECTION)),
         };
         let is_inside = flags & flag::INSIDE != 0;
-        let exit_distance = if is_inside { at.exit_distance(direction) } else { Number::ZERO };
-        self.write_number(EXIT_DISTANCE, [slot::DEPARTURE, 2], exit_distance, 0.0)
+        let exit_distance = if is_inside { at.exit_distance(direction, self.choices) } else { Number::ZERO };
+        // Near an edge of a cone, the distance may be far shorter than its errors, which are those of the cone's size.
+        let size = at.cone.map_or(0.0, |cone| cone.ball()[3].into());
+        self.write_number(EXIT_DISTANCE, [slot::DEPARTURE, 2], exit_distance, size)
     }
 
     fn write_radiance(&mut self, radiance: Vector, alpha: Number) -> Result<(), Mismatch> {
@@ -177,9 +179,9 @@ impl Kernel<'_> {
 
     /// Writes the flags, including the side of a surface on which the path continues.
     fn write_flags(&mut self, at: &Vertex, is_behind: bool, flags: u32) -> Result<(), Mismatch> {
-        let is_inside = at.is_sphere() && is_behind != at.is_back;
+        let is_inside = at.is_shape() && is_behind != at.is_back;
         let side = if is_inside { flag::INSIDE } else { 0 };
-        let ground = if at.is_sphere() { 0 } else { flag::ON_GROUND };
+        let ground = if at.is_shape() { 0 } else { flag::ON_GROUND };
         self.write_bits(FLAGS, [slot::ORIGIN, 3], side | ground | flags)?;
         self.write_exit_distance(at)
     }

@@ -102,12 +102,12 @@ impl Kernel<'_> {
             return false;
         }
         if vertex.is_back {
-            let exit = vertex.exit_distance(found.direction);
+            let exit = vertex.exit_distance(found.direction, self.choices);
             if self.choices.decide(exit.is_less(found.distance)) {
                 return false;
             }
         }
-        if vertex.is_sphere() {
+        if vertex.is_shape() {
             let ground = self.ground_distance(vertex.position, found.direction, Number::ZERO);
             if ground.is_some_and(|t| self.choices.decide(t.is_less(found.distance))) {
                 return false;

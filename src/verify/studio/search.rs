@@ -7,11 +7,12 @@ use glam::DVec3;
 use crate::geometry::math::wide;
 use crate::light::codes::lamp::HEAD;
 use crate::recording::lit::{flag, slot};
+use crate::scene::Shape;
 use crate::verify::camera::{BoxCrossing, SMALLEST_COMPONENT, SlabCrossing};
-use crate::verify::hit::Candidates;
+use crate::verify::hit::{Candidates, shape_of};
 use crate::verify::lit::kernel::Kernel;
 use crate::verify::lit::sampling::{Lamp, axes_around, cosine_direction};
-use crate::verify::lit::search::{Entry, Obstacle, is_same};
+use crate::verify::lit::search::{Entry, Obstacle, Role, is_same};
 use crate::verify::number::{Number, Vector};
 use crate::verify::rounding::{DIVIDE, FLUSH, Interval, PAD, U, gamma};
 use crate::verify::sphere::{Line, Slack};
@@ -43,7 +44,7 @@ impl Kernel<'_> {
         self.is_hidden(candidates, direction, distance)
     }
 
-    /// Whether a sphere is near in a direction of ambient light.
+    /// Whether a shape is near in a direction of ambient light.
     pub(crate) fn is_direction_hidden(&mut self, candidates: &Candidates, index: u32) -> Obstacle {
         let lighting = self.lighting();
         let sample = self.address.sample.wrapping_mul(lighting.occlusion_samples).wrapping_add(index);
@@ -74,18 +75,21 @@ impl Kernel<'_> {
         self.is_occluded(candidates, direction, distance)
     }
 
-    /// Whether an opaque sphere, other than the sphere of the surface, is nearer than a distance.
+    /// Whether an opaque shape, other than the shape of the surface, is nearer than a distance. Of a cone that is seen from
+    /// inside, the far side is searched.
     fn is_occluded(&self, candidates: &Candidates, toward: Vector, distance: Number) -> Obstacle {
         let (scene, state) = (self.scene, self.before);
         let corners = self.inputs.occluders.map(wide);
         let Some(ray) = Entry::aimed(corners, state.vector(slot::ORIGIN), toward) else {
             return Obstacle { must: false, ..Obstacle::ALWAYS };
         };
-        let departed = scene.spheres().get(state.raw.departure().id as usize);
+        let departed = shape_of(scene, state.raw.departure().id);
         let are_opaque = scene.is_opaque();
-        ray.hidden(candidates, distance, |candidate| {
-            let is_own = departed.is_some_and(|own| is_same(candidate.shape, *own));
-            is_own || !(are_opaque || scene.surface(candidate.id).opacity >= 1.0)
+        ray.hidden(candidates, distance, |id, shape| match shape {
+            _ if !are_opaque && scene.surface(id).opacity < 1.0 => Role::Exempt,
+            _ if departed.is_none_or(|own| !is_same(shape, own)) => Role::Occluder,
+            Shape::Cone(_) if state.has(flag::BACK) => Role::FarSide,
+            _ => Role::Exempt,
         })
     }
 }

@@ -13,8 +13,8 @@ use crate::verify::rounding::Interval;
 
 const FLAGS: Name = (LitStage::Surface, "the ray's flags");
 const ORIGIN: Name = (LitStage::Surface, "the origin of a ray that has ended");
-const DEPARTURE: Name = (LitStage::Surface, "the sphere that the ray passes");
-const EXIT_DISTANCE: Name = (LitStage::Surface, "the distance to the far side of the sphere");
+const DEPARTURE: Name = (LitStage::Surface, "the shape that the ray passes");
+const EXIT_DISTANCE: Name = (LitStage::Surface, "the distance to the far side of the shape");
 const REST: Name = (LitStage::Surface, "the weight that remains behind the surface");
 const WEIGHT: Name = (LitStage::Surface, "the weight of the surface");
 const RADIANCE: Name = (LitStage::Surface, "the radiance so far");
@@ -51,7 +51,7 @@ impl Kernel<'_> {
             return Ok(HitKind::Nothing);
         };
         let material = self.material_of(&vertex);
-        let is_caught = !vertex.is_sphere() && lighting.flags & flag::CATCHER != 0;
+        let is_caught = !vertex.is_shape() && lighting.flags & flag::CATCHER != 0;
         let is_emitter = material.kind == EMISSIVE;
 
         let far = before.number(slot::FIRST) + vertex.distance;
@@ -103,9 +103,9 @@ impl Kernel<'_> {
         let is_closed = vertex.is_back && !self.choices.decide(opacity.is_less(Number::ONE));
         let flags = [
             (!ends, flag::ALIVE),
-            (vertex.is_sphere() && !vertex.is_back, flag::INSIDE),
+            (vertex.is_shape() && !vertex.is_back, flag::INSIDE),
             (is_closed, flag::BACK),
-            (!vertex.is_sphere(), flag::ON_GROUND),
+            (!vertex.is_shape(), flag::ON_GROUND),
         ];
         let flags = flags.into_iter().filter(|(is_set, _)| *is_set).map(|(_, flag)| flag).sum();
         self.write_bits(FLAGS, [slot::ORIGIN, 3], flags)?;
@@ -126,16 +126,16 @@ impl Kernel<'_> {
         self.write_number(ALPHA, [slot::RADIANCE, 3], before.number(slot::RADIANCE) + opacity, 0.0)
     }
 
-    /// Writes the sphere that the ray passes, its radius, and the distance to its far side.
+    /// Writes the shape that the ray passes, its radius, and the distance to its far side.
     fn write_passed(&mut self, vertex: &Vertex) -> Result<(), Mismatch> {
-        let is_sphere = vertex.is_sphere();
-        let (id, index) = if is_sphere { (self.hit.id, self.hit.shape_index) } else { (NO_ID, 0) };
+        let is_shape = vertex.is_shape();
+        let (id, index) = if is_shape { (self.hit.id, self.hit.shape_index) } else { (NO_ID, 0) };
         self.write_bits(DEPARTURE, [slot::DEPARTURE, 0], id)?;
         self.write_bits(DEPARTURE, [slot::DEPARTURE, 1], index)?;
         let radius = Number::recorded(vertex.sphere[3]);
         self.write_number(DEPARTURE, [slot::DEPARTURE, 3], radius, 0.0)?;
-        let exit = vertex.exit_distance(self.before.vector(slot::DIRECTION));
-        let size = f64::from(vertex.sphere[3]);
+        let exit = vertex.exit_distance(self.before.vector(slot::DIRECTION), self.choices);
+        let size = vertex.cone.map_or(f64::from(vertex.sphere[3]), |cone| cone.ball()[3].into());
         self.write_number(EXIT_DISTANCE, [slot::DEPARTURE, 2], exit, size)
     }
 

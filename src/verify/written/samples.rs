@@ -76,12 +76,6 @@ impl<'a> PictureCheck<'a> {
 #[error("{0}")]
 pub struct WrittenError(String);
 
-impl WrittenError {
-    pub(in crate::verify) fn new(message: &str) -> Self {
-        Self(message.to_owned())
-    }
-}
-
 /// The samples of a picture as they are in its file, row by row from the top.
 #[derive(Clone, Copy, Debug)]
 pub enum Samples<'a> {

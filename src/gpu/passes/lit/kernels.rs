@@ -6,7 +6,7 @@ use crate::accel::{BrickKind, Primitive, Structure};
 use crate::camera::CameraKind;
 use crate::gpu::scene::scene_summary::ExcludeBy;
 use crate::gpu::shader::BrickPass::{First, Later};
-use crate::gpu::shader::{BrickPass, Constant, Kernel, camera_constant, structure_choice};
+use crate::gpu::shader::{BrickPass, Constant, Kernel, camera_constant, lit_choices};
 
 /// The properties of a lighting that determine its kernels.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
@@ -136,10 +136,10 @@ pub(super) fn one_pass_fits(structure: Structure, limits: &wgpu::Limits) -> bool
 pub(crate) struct LitKey {
     pub(crate) camera: CameraKind,
     pub(crate) mode: Mode,
-    pub(crate) structure: Structure,
-    /// The structure of the spheres that cast shadows.
-    pub(crate) occluders: Structure,
-    /// How rays exclude the sphere on which they start, among all spheres and among the spheres that cast shadows.
+    pub(crate) structures: Structures,
+    /// The structures of the shapes that cast shadows.
+    pub(crate) occluders: Structures,
+    /// How rays exclude the shape on which they start, among all shapes and among the shapes that cast shadows.
     pub(crate) exclude_by: [ExcludeBy; 2],
     /// Whether the scene has several bricks.
     pub(crate) several_bricks: bool,
@@ -147,22 +147,58 @@ pub(crate) struct LitKey {
     pub(crate) one_pass: Option<OnePass>,
 }
 
-/// The entry point of a pass's kernel, the paths that it processes, and whether it searches the first brick.
-pub(super) type PassName = (&'static str, Schedule, BrickPass);
+/// The structures of a scene's bricks, for each primitive. `None` without such bricks.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
+pub(crate) struct Structures {
+    pub(crate) spheres: Option<Structure>,
+    pub(crate) cones: Option<Structure>,
+}
+
+impl Structures {
+    /// The structures of these bricks.
+    pub(crate) fn of(kinds: &[BrickKind]) -> Self {
+        let of = |primitive| kinds.iter().find(|kind| kind.primitive == primitive).map(|kind| kind.structure);
+        Self { spheres: of(Primitive::Sphere), cones: of(Primitive::Cone) }
+    }
+
+    /// The bricks, those of spheres first. Without bricks, a list of spheres.
+    pub(super) fn kinds(self) -> impl Iterator<Item = BrickKind> {
+        let Self { spheres, cones } = self;
+        let spheres = spheres.or(cones.is_none().then_some(Structure::List));
+        let kind = |primitive| move |structure| BrickKind { structure, primitive };
+        spheres.map(kind(Primitive::Sphere)).into_iter().chain(cones.map(kind(Primitive::Cone)))
+    }
+}
+
+/// A pass: the entry point of its kernel, the paths that it processes, whether it searches the first brick, and the shapes
+/// of its brick.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+pub(super) struct PassName {
+    pub(super) entry_point: &'static str,
+    pub(super) schedule: Schedule,
+    pub(super) brick_pass: BrickPass,
+    pub(super) primitive: Primitive,
+}
 
 impl LitKey {
-    /// The keys of all pictures of scenes with these structures.
+    /// The keys of all pictures of scenes of spheres with these structures, and those of spheres and cones.
     pub(super) fn all(structures: &[Structure]) -> impl Iterator<Item = Self> {
+        let spheres = structures.iter().map(|&structure| Structures { spheres: Some(structure), cones: None });
+        let kinds: Vec<BrickKind> = BrickKind::of(structures, &[Primitive::Cone]).collect();
+        let both =
+            kinds.into_iter().map(|kind| Structures { spheres: Some(kind.structure), cones: Some(kind.structure) });
+        let structures: Vec<Structures> = spheres.chain(both).collect();
         let one_pass = OnePass::ALL.into_iter().map(|pass| (pass.mode(), Some(pass)));
         let modes = Mode::all().map(|mode| (mode, None)).chain(one_pass);
         modes.flat_map(move |(mode, one_pass)| {
-            structures.iter().flat_map(move |&structure| {
+            let structures = structures.clone().into_iter().filter(move |of| one_pass.is_none() || of.cones.is_none());
+            structures.flat_map(move |structures| {
                 ExcludeBy::ALL.into_iter().flat_map(move |exclude_by| {
                     CameraKind::ALL.iter().map(move |&camera| Self {
                         camera,
                         mode,
-                        structure,
-                        occluders: structure,
+                        structures,
+                        occluders: structures,
                         exclude_by: [exclude_by; 2],
                         several_bricks: true,
                         one_pass,
@@ -172,71 +208,89 @@ impl LitKey {
         })
     }
 
+    /// The shapes of the first brick.
+    pub(super) fn first(&self) -> Primitive {
+        self.structures.kinds().next().map(|kind| kind.primitive).unwrap_or_default()
+    }
+
     /// The passes that take samples of the pictures.
     pub(super) fn passes(&self) -> Vec<PassName> {
         use Schedule::{Pixels, Queue};
-        if let Some(pass) = self.one_pass {
-            return vec![(pass.entry_point(), Pixels, First)];
+        let first = self.first();
+        let pass =
+            |(entry_point, schedule, brick_pass), primitive| PassName { entry_point, schedule, brick_pass, primitive };
+        if let Some(kind) = self.one_pass {
+            return vec![pass((kind.entry_point(), Pixels, First), first)];
         }
-        let steps: &[PassName] = match self.mode {
-            Mode::Studio => &[
-                ("surface", Pixels, First),
-                ("surface", Queue, First),
-                ("shadow", Queue, First),
-                ("illuminate", Queue, First),
-                ("ambient", Queue, First),
-                ("gather", Queue, First),
-            ],
-            Mode::Path(..) => &[("scatter", Pixels, First), ("scatter", Queue, First), ("occlude", Queue, First)],
-        };
-        let later: &[PassName] = &[("extend", Pixels, Later), ("extend", Queue, Later)];
-        let common = [
-            ("start", Pixels, First),
-            ("extend", Pixels, First),
-            ("extend", Queue, First),
-            ("accumulate", Pixels, First),
+        let mut passes = vec![
+            pass(("start", Pixels, First), first),
+            pass(("extend", Pixels, First), first),
+            pass(("extend", Queue, First), first),
+            pass(("accumulate", Pixels, First), first),
         ];
-        [&common[..], steps, if self.several_bricks { later } else { &[] }].concat()
+        let (shade, search): (_, &[&str]) = match self.mode {
+            Mode::Studio => ("surface", &["shadow", "ambient"]),
+            Mode::Path(..) => ("scatter", &["occlude"]),
+        };
+        if self.mode.is_studio() {
+            passes.extend(["illuminate", "gather"].map(|entry_point| pass((entry_point, Queue, First), first)));
+        }
+        for BrickKind { primitive, .. } in self.structures.kinds() {
+            passes.extend([Pixels, Queue].map(|schedule| pass((shade, schedule, First), primitive)));
+            if self.several_bricks {
+                passes.extend([Pixels, Queue].map(|schedule| pass(("extend", schedule, Later), primitive)));
+            }
+        }
+        for BrickKind { primitive, .. } in self.occluders.kinds() {
+            passes.extend(search.iter().map(|entry_point| pass((entry_point, Queue, First), primitive)));
+        }
+        passes
     }
 
-    /// Whether a pass searches the spheres that cast shadows.
-    pub(super) fn finds_occluders((entry_point, ..): PassName) -> bool {
+    /// Whether a pass searches the shapes that cast shadows.
+    pub(super) fn finds_occluders(entry_point: &str) -> bool {
         matches!(entry_point, "occlude" | "shadow" | "ambient")
     }
 
+    /// The kind of brick that a pass has.
+    pub(super) fn kind_of(&self, name: PassName) -> BrickKind {
+        let of = if Self::finds_occluders(name.entry_point) { self.occluders } else { self.structures };
+        let none = BrickKind { structure: Structure::List, primitive: name.primitive };
+        of.kinds().find(|kind| kind.primitive == name.primitive).unwrap_or(none)
+    }
+
     /// The kernel of a pass.
-    pub(super) fn kernel(&self, name @ (entry_point, schedule, brick_pass): PassName) -> Kernel {
+    pub(super) fn kernel(&self, name: PassName) -> Kernel {
         let [of_all, of_occluders] = self.exclude_by;
-        let (structure, exclude_by) = match Self::finds_occluders(name) {
-            true => (self.occluders, of_occluders),
-            false => (self.structure, of_all),
-        };
+        let exclude_by = if Self::finds_occluders(name.entry_point) { of_occluders } else { of_all };
         let sky = match self.mode {
             Mode::Path(.., SkyKind::Image) => "sky-image",
             _ => "plain-sky",
         };
         let is_pass = |pass| u32::from(self.one_pass == Some(pass));
-        Kernel::new(
-            entry_point,
-            &[structure_choice(BrickKind { structure, primitive: Primitive::Sphere }), ("$sky", sky)],
-        )
-        .with(self.mode.constants())
-        .with([camera_constant(self.camera), exclude_by.constant()])
-        .with([("HAS_GROUND", is_pass(OnePass::Ground))])
-        .with([brick_pass.constant(), schedule.constant()])
+        let [shape, place, excluded, structure] = lit_choices(self.kind_of(name));
+        Kernel::new(name.entry_point, &[shape, place, excluded, structure, ("$sky", sky)])
+            .with(self.mode.constants())
+            .with([camera_constant(self.camera), exclude_by.constant()])
+            .with([("HAS_GROUND", is_pass(OnePass::Ground))])
+            .with([name.brick_pass.constant(), name.schedule.constant()])
     }
 }
 
 /// The pass that computes the numbers of workgroups of the next indirect dispatches, and the pass that sums variances
 /// and luminances of pixels.
-pub(super) const OF_ALL: [PassName; 2] = [("advance", Schedule::Pixels, First), ("noise", Schedule::Pixels, First)];
+pub(super) const OF_ALL: [PassName; 2] = [of_all("advance"), of_all("noise")];
+
+const fn of_all(entry_point: &'static str) -> PassName {
+    PassName { entry_point, schedule: Schedule::Pixels, brick_pass: First, primitive: Primitive::Sphere }
+}
 
 /// The kernels for every camera, structure, kind of lighting and schedule.
 pub(super) fn kernels() -> Vec<Kernel> {
     let mut known = HashSet::new();
     // If there are several passes, none depends on both a camera and a structure.
     let keys = LitKey::all(Structure::WITH_KERNELS).filter(|key| {
-        let is_first = key.camera == CameraKind::Pinhole || key.structure == Structure::List;
+        let is_first = key.camera == CameraKind::Pinhole || key.structures.spheres == Some(Structure::List);
         key.one_pass.is_some() || is_first
     });
     let kernels = keys.flat_map(|key| key.passes().into_iter().chain(OF_ALL).map(move |name| key.kernel(name)));

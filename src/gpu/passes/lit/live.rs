@@ -18,7 +18,7 @@ use crate::gpu::scene::scene_summary::ExcludeBy;
 use crate::gpu::shader::formats::ColorTarget;
 use crate::gpu::shader::layouts::{Layouts, layout_of, storage};
 use crate::gpu::shader::{
-    Kernel, camera_constant, color_target_choice, data_layers_choice, pipeline, pipeline_with, structure_choice,
+    Kernel, camera_constant, color_target_choice, data_layers_choice, lit_choices, pipeline, pipeline_with,
 };
 
 /// The properties in which sets of passes differ.
@@ -65,8 +65,11 @@ pub(crate) struct LivePasses {
 
 /// The kernel that traces the rays of a frame.
 fn live_kernel(key: LiveKey) -> Kernel {
-    Kernel::new("live", &[structure_choice(BrickKind { structure: key.structure, primitive: Primitive::Sphere })])
-        .with([camera_constant(key.camera), key.exclude_by.constant(), ("HAS_GROUND", u32::from(key.has_ground))])
+    Kernel::new("live", &lit_choices(BrickKind { structure: key.structure, primitive: Primitive::Sphere })).with([
+        camera_constant(key.camera),
+        key.exclude_by.constant(),
+        ("HAS_GROUND", u32::from(key.has_ground)),
+    ])
 }
 
 /// The kernel that averages over neighbours and writes the picture.
@@ -95,13 +98,9 @@ pub(crate) fn live_kernels() -> Vec<Kernel> {
 impl LiveKey {
     /// The key for a studio whose samples one pass can take as a whole.
     pub(crate) fn new(of: &LitKey) -> Option<Self> {
-        let LitKey { camera, structure, exclude_by: [exclude_by, _], one_pass, .. } = *of;
-        one_pass.filter(|pass| !pass.is_paths()).map(|studio| Self {
-            camera,
-            structure,
-            exclude_by,
-            has_ground: studio == OnePass::Ground,
-        })
+        let LitKey { camera, structures, exclude_by: [exclude_by, _], one_pass, .. } = *of;
+        let studio = one_pass.filter(|pass| !pass.is_paths())?;
+        Some(Self { camera, structure: structures.spheres?, exclude_by, has_ground: studio == OnePass::Ground })
     }
 }
 

@@ -33,6 +33,7 @@ use crate::gpu::shader::records::FrameParameters;
 use crate::render::RenderSettings;
 pub(crate) use frame::LightingBuffers;
 pub(crate) use frame::{Frames, LitFrame, MAX_DISPATCHES, RecordedBy};
+use kernels::Structures;
 pub(crate) use kernels::{LitKey, Mode};
 pub(crate) use lighting::LightingData;
 pub(crate) use live::{LiveKey, LivePasses, LiveView};
@@ -72,12 +73,13 @@ impl<'a> LitScene<'a> {
         LitKey {
             camera: view.camera.kind(),
             mode: lighting.mode,
-            structure: all.structure(),
-            occluders: occluders.structure(),
+            structures: Structures::of(&all.kinds()),
+            occluders: Structures::of(&occluders.kinds()),
             exclude_by: [all, occluders].map(|scene| scene.exclude_by),
             several_bricks: all.bricks.len() > 1,
             one_pass: lighting
                 .one_pass(all.bricks.len())
+                .filter(|_| !all.has_cones())
                 .filter(|pass| !pass.is_paths() || all.shape.paths_in_one_pass)
                 .filter(|_| lighting.loops_of_path() <= round::MOST_LOOPS)
                 .filter(|_| kernels::one_pass_fits(all.structure(), limits))

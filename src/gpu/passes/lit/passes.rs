@@ -7,6 +7,7 @@ use wgpu::{
     BindGroup, BindGroupLayout, BindingType, Buffer, CommandEncoder, ComputePassDescriptor, ComputePipeline, Device,
 };
 
+use crate::accel::BrickKind;
 use crate::gpu::checks::Checks;
 use crate::gpu::edit::Edits;
 use crate::gpu::error::GpuError;
@@ -87,27 +88,24 @@ impl LitPasses {
     /// Builds all pipelines.
     pub(crate) async fn new(device: &Device, key: LitKey, edits: &Edits) -> Result<Self, GpuError> {
         let checks = Checks::default();
-        let options = RendererOptions {
-            cameras: Vec::new(),
-            structures: vec![key.structure, key.occluders],
-            ..RendererOptions::default()
-        };
+        let kinds: Vec<BrickKind> = key.structures.kinds().chain(key.occluders.kinds()).collect();
+        let options = RendererOptions { cameras: Vec::new(), ..RendererOptions::default() }.with_kinds(&kinds);
         let scene = checks.create(device, || Layouts::new(device, &options));
         let layouts = checks.create(device, || LitLayouts::new(device));
         let LitLayouts { frame, advance, film, samples, lighting, sky } = &layouts;
-        let brick = |index: usize| &scene.brick[index].1;
         let build = |name: PassName| {
             let kernel = key.kernel(name).edited(edits)?;
-            let groups = match name.0 {
+            let (brick, surface) = (scene.brick_of(key.kind_of(name)), scene.surface_of(name.primitive));
+            let groups = match name.entry_point {
                 "advance" => vec![advance],
                 "accumulate" | "noise" => vec![film],
-                "extend" => vec![frame, brick(0)],
-                "one_pass" | "whole_paths" => vec![samples, brick(0), lighting, &scene.appearance],
-                _ if LitKey::finds_occluders(name) => vec![frame, brick(1), lighting],
+                "extend" => vec![frame, brick?],
+                "one_pass" | "whole_paths" => vec![samples, brick?, lighting, &scene.appearance],
+                entry_point if LitKey::finds_occluders(entry_point) => vec![frame, brick?, lighting],
                 "scatter" if matches!(key.mode, Mode::Path(.., SkyKind::Image)) => {
-                    vec![frame, &scene.surface, lighting, sky]
+                    vec![frame, surface, lighting, sky]
                 }
-                _ => vec![frame, &scene.surface, lighting],
+                _ => vec![frame, surface, lighting],
             };
             let pipeline = pipeline(device, &kernel, &groups, &checks);
             Ok::<_, GpuError>(Pass { name: kernel.entry_point, pipeline })

@@ -4,9 +4,10 @@ use std::ops::Range;
 
 use wgpu::BindGroup;
 
+use crate::accel::Primitive;
 use crate::gpu::error::GpuError;
 use crate::gpu::passes::lit::frame::Area;
-use crate::gpu::passes::lit::kernels::{LitKey, Mode, Schedule};
+use crate::gpu::passes::lit::kernels::{LitKey, Mode, PassName, Schedule};
 use crate::gpu::passes::lit::lighting::LightingData;
 use crate::gpu::passes::lit::passes::{LitPasses, Pass};
 use crate::gpu::passes::lit::records::{BITS, DispatchParameters, LIST_OF_LIGHT};
@@ -159,14 +160,13 @@ impl<'a> Round<'a> {
             return Ok(self.one_pass(pass, dispatch));
         }
         let mut steps = Steps { round: *self, in_flight: count, steps: Vec::new() };
-        let first = &self.scene.bricks[0].surface_group;
-        steps.push("start", dispatch, Some(first), Work::Pixels(Area::Whole))?;
+        steps.push_first("start", dispatch, Work::Pixels(Area::Whole))?;
         steps.mark(Moment::Started);
         match key.mode {
             Mode::Studio => steps.studio(dispatch)?,
             Mode::Path(..) => steps.path(dispatch)?,
         }
-        steps.push("accumulate", dispatch, None, Work::Sums)?;
+        steps.push("accumulate", dispatch, (key.first(), None), Work::Sums)?;
         steps.mark(Moment::Accumulated);
         Ok(steps.steps)
     }
@@ -212,17 +212,28 @@ struct Steps<'a> {
 }
 
 impl<'a> Steps<'a> {
-    /// Adds a dispatch of the pass with an entry point.
+    /// Adds a dispatch of the pass with an entry point over a brick of these shapes.
     fn push(
         &mut self,
         entry_point: &'static str,
         dispatch: DispatchParameters,
-        brick: Option<&'a BindGroup>,
+        (primitive, brick): (Primitive, Option<&'a BindGroup>),
         work: Work,
     ) -> Result<(), GpuError> {
-        let name = (entry_point, work.schedule(), BrickPass::First);
+        let name = PassName { entry_point, schedule: work.schedule(), brick_pass: BrickPass::First, primitive };
         self.push_pass(self.round.passes.named(name)?, dispatch, brick, work);
         Ok(())
+    }
+
+    /// Adds a dispatch of a pass that needs the palette alone, with the surfaces of the first brick.
+    fn push_first(
+        &mut self,
+        entry_point: &'static str,
+        dispatch: DispatchParameters,
+        work: Work,
+    ) -> Result<(), GpuError> {
+        let first = &self.round.scene.bricks[0];
+        self.push(entry_point, dispatch, (first.kind.primitive, Some(&first.surface_group)), work)
     }
 
     fn push_pass(&mut self, pass: &'a Pass, dispatch: DispatchParameters, brick: Option<&'a BindGroup>, work: Work) {
@@ -256,7 +267,9 @@ impl<'a> Steps<'a> {
         let work = work_of(dispatch, Area::Visible);
         for (index, brick) in self.round.scene.bricks.iter().enumerate() {
             let brick_pass = if index == 0 { BrickPass::First } else { BrickPass::Later };
-            let pass = self.round.passes.named(("extend", work.schedule(), brick_pass))?;
+            let primitive = brick.kind.primitive;
+            let name = PassName { entry_point: "extend", schedule: work.schedule(), brick_pass, primitive };
+            let pass = self.round.passes.named(name)?;
             self.push_pass(pass, dispatch, Some(&brick.trace_group), work);
             self.mark_search();
         }
@@ -275,7 +288,7 @@ impl<'a> Steps<'a> {
         // Pixels outside the visible region show the background.
         let work = work_of(dispatch, Area::Whole);
         let mut bricks = self.round.scene.bricks.iter();
-        bricks.try_for_each(|b| self.push(entry_point, dispatch, Some(&b.surface_group), work))
+        bricks.try_for_each(|b| self.push(entry_point, dispatch, (b.kind.primitive, Some(&b.surface_group)), work))
     }
 
     /// The parameters of the passes over a surface. From the second surface on, the list of paths is counted first.
@@ -301,7 +314,8 @@ impl<'a> Steps<'a> {
         area: Area,
     ) -> Result<(), GpuError> {
         for brick in &self.round.occluders.bricks {
-            self.push(entry_point, dispatch, Some(&brick.trace_group), Work::List(area))?;
+            let of_brick = (brick.kind.primitive, Some(&brick.trace_group));
+            self.push(entry_point, dispatch, of_brick, Work::List(area))?;
             self.mark_search();
         }
         Ok(())
@@ -327,7 +341,6 @@ impl<'a> Steps<'a> {
 
     fn studio(&mut self, dispatch: DispatchParameters) -> Result<(), GpuError> {
         let lighting = self.round.lighting;
-        let first = &self.round.scene.bricks[0].surface_group;
         let lights = lighting.casts_shadow.len() as u32;
         let directions = lighting.parameters.occlusion_samples;
         let at_once = self.round.occluders.rays_at_once(self.round.strategy.at_once());
@@ -354,7 +367,7 @@ impl<'a> Steps<'a> {
                     self.mark(Moment::Shadowed);
                 }
                 let dispatch = DispatchParameters { light, count, ..dispatch };
-                self.push("illuminate", dispatch, Some(first), Work::List(Area::Whole))?;
+                self.push_first("illuminate", dispatch, Work::List(Area::Whole))?;
                 self.mark(Moment::Illuminated);
             }
             for light in (0..directions).step_by(BITS) {
@@ -367,7 +380,7 @@ impl<'a> Steps<'a> {
                 }
                 self.mark(Moment::Searched);
                 let dispatch = DispatchParameters { light, count, ..dispatch };
-                self.push("gather", dispatch, Some(first), Work::List(Area::Whole))?;
+                self.push_first("gather", dispatch, Work::List(Area::Whole))?;
                 self.mark(Moment::Gathered);
             }
         }
