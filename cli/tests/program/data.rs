@@ -149,7 +149,7 @@ fn a_selection_decides_what_is_seen_and_counted() {
     said(&alone, "row.xyz; --color-by; q");
     assert!(kept == decode(&alone.read("out.png")));
     let (notes, line) = said(&folder, "scene.toml; --select; index != 0 and not species == Q");
-    assert_eq!(notes, "note: no sphere has the species `Q`; there are O, H, C");
+    assert_eq!(notes, "note: no sphere has the species Q; there are O, H, C");
     assert!(line.starts_with("scene.toml: kept 3 of 4 atoms"), "{line}");
 }
 

@@ -11,6 +11,7 @@
 //! Nothing here needs a GPU, and nothing but [`load::open`] and the frames that it returns accesses the file system.
 
 pub mod added;
+mod cell;
 pub mod column;
 pub mod css;
 pub mod load;

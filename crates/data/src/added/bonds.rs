@@ -136,6 +136,16 @@ fn no_elements() -> AddError {
     )
 }
 
+/// The pairs of bonded atoms with the factor by default, also across the borders of a periodic cell.
+pub(crate) fn bonded_pairs(data: &Dataset) -> Result<Vec<[u32; 2]>, AddError> {
+    let points: Vec<DVec3> = (0..data.spheres.len()).map(|index| center(&data.spheres, index).0).collect();
+    let Neighbours { mut within, across } = covalent_bonds(Bonds::FACTOR, data, &points, &mut Vec::new())?;
+    within.extend(across.into_iter().filter(|(a, b, _)| a < b).map(|(a, b, _)| [a, b]));
+    within.sort_unstable();
+    within.dedup();
+    Ok(within)
+}
+
 /// Finds pairs of spheres that are closer than `factor` times the sum of their covalent radii.
 fn covalent_bonds(
     factor: f64,

@@ -10,6 +10,7 @@ mod neighbours;
 mod shapes;
 
 pub use arrows::Arrows;
+pub(crate) use bonds::bonded_pairs;
 pub use bonds::{BondLength, Bonds};
 pub use shapes::{AddError, AddedShapes, ArrowKey};
 

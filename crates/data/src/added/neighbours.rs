@@ -2,9 +2,10 @@
 
 use std::collections::HashMap;
 
-use glam::{DMat3, DVec3, I64Vec3};
+use glam::{DVec3, I64Vec3};
 
 use super::shapes::AddError;
+use crate::cell::PeriodicCell;
 use crate::load::Dataset;
 
 /// Pairs of spheres that are close together.
@@ -25,13 +26,15 @@ pub(super) fn neighbours(
     reach: f64,
     is_pair: impl Fn(u32, u32, f64) -> bool,
 ) -> Result<Neighbours, AddError> {
-    let Some(cell) = Cell::of(data) else {
+    let Some(cell) = PeriodicCell::of(data) else {
         return Ok(Neighbours { within: pairs(points, points.len(), reach, is_pair)?, across: Vec::new() });
     };
     // The spheres in the cell, and behind them the images around the cell.
     let turns: Vec<DVec3> = points.iter().map(|point| cell.turns(*point)).collect();
     let mut all: Vec<DVec3> = points.iter().zip(&turns).map(|(point, turns)| cell.moved(*point, -*turns)).collect();
-    let images = cell.images(&all, reach)?;
+    let too_small = "the periodic cell is so small that spheres have too many images within the length of bonds; choose a \
+                     smaller factor or length of bonds";
+    let images = cell.images(&all, reach).ok_or_else(|| AddError(too_small.to_owned()))?;
     let count = points.len();
     let base = |index: u32| match images.get((index as usize).wrapping_sub(count)) {
         Some((base, shift)) => (*base, *shift),
@@ -60,88 +63,6 @@ pub(super) fn neighbours(
     }
     result.within.sort_unstable();
     Ok(result)
-}
-
-/// A cell that repeats in some directions.
-struct Cell {
-    origin: DVec3,
-    /// Its columns are the edges.
-    edges: DMat3,
-    /// The inverse matrix, of which the rows of other directions are 0.
-    inverse: DMat3,
-}
-
-/// The most images of each sphere, on average.
-const MOST_IMAGES: usize = 64;
-
-/// The number of images in addition, so that few spheres never have too many.
-const MORE_IMAGES: usize = 1 << 20;
-
-impl Cell {
-    /// The cell of data; `None` if there is none, or it does not repeat or has no volume.
-    fn of(data: &Dataset) -> Option<Self> {
-        let edges = DMat3::from_cols_array_2d(&data.cell?);
-        let repeats = DVec3::from_array(data.is_periodic.map(|is| if is { 1.0 } else { 0.0 }));
-        let inverse = DMat3::from_diagonal(repeats) * edges.inverse();
-        let is_regular = edges.determinant().is_normal() && inverse.is_finite() && data.is_periodic.contains(&true);
-        is_regular.then(|| Self { origin: data.cell_origin.into(), edges, inverse })
-    }
-
-    /// The place in the cell, as fractions of its edges. Fractions along an edge in whose direction nothing repeats are 0.
-    fn fractions(&self, point: DVec3) -> DVec3 {
-        self.inverse * (point - self.origin)
-    }
-
-    /// The whole edges between the cell and a point.
-    fn turns(&self, point: DVec3) -> DVec3 {
-        self.fractions(point).floor()
-    }
-
-    fn moved(&self, point: DVec3, turns: DVec3) -> DVec3 {
-        if turns == DVec3::ZERO { point } else { point + self.edges * turns }
-    }
-
-    /// The images that are at most `reach` outside the cell, as indices of points in the cell and whole edges.
-    fn images(&self, points: &[DVec3], reach: f64) -> Result<Vec<(u32, DVec3)>, AddError> {
-        let rows = self.inverse.transpose();
-        // Wider by more than rounding.
-        let reach = [rows.x_axis, rows.y_axis, rows.z_axis].map(|row| 1.000_001 * reach * row.length());
-        let most = points.len().saturating_mul(MOST_IMAGES).saturating_add(MORE_IMAGES);
-        let steps = reach.map(|reach| reach.ceil().min(1e6) as i32);
-        let around = steps.iter().map(|steps| 2.0 * f64::from(*steps) + 1.0).product::<f64>();
-        let is_too_small = |count: f64| count > most as f64;
-        let too_small = || {
-            AddError(
-                "the periodic cell is so small that spheres have too many images within the length of bonds; choose a \
-                 smaller factor or length of bonds"
-                    .to_owned(),
-            )
-        };
-        if is_too_small(around) {
-            return Err(too_small());
-        }
-        let mut images = Vec::new();
-        for (index, point) in points.iter().enumerate().filter(|(_, point)| point.is_finite()) {
-            let place = self.fractions(*point);
-            let ends = |k: usize| {
-                (-steps[k]..=steps[k]).filter(move |step| {
-                    let place = place[k] + f64::from(*step);
-                    *step == 0 || (-reach[k]..=1.0 + reach[k]).contains(&place)
-                })
-            };
-            for x in ends(0) {
-                for y in ends(1) {
-                    for z in ends(2).filter(|z| [x, y, *z] != [0; 3]) {
-                        images.push((index as u32, DVec3::from([x, y, z].map(f64::from))));
-                    }
-                }
-            }
-            if is_too_small(images.len() as f64) {
-                return Err(too_small());
-            }
-        }
-        Ok(images)
-    }
 }
 
 /// The most pairs for each point, on average. The densest packing of equal spheres has 6 pairs of neighbours for each.
@@ -233,6 +154,7 @@ fn pairs(
 #[cfg(test)]
 mod tests {
     use super::*;
+    use glam::DMat3;
     use pinhole::scene::sphere_array::SphereArray;
 
     fn all_pairs(points: &[DVec3], reach: f64) -> Vec<[u32; 2]> {

@@ -33,6 +33,8 @@ pub(super) struct Atom<'a> {
     pub(super) letter: u8,
     /// The insertion code of the residue, or a blank.
     pub(super) insertion: u8,
+    /// The number of the atom in the file, or NaN.
+    pub(super) serial: f64,
 }
 
 /// The atoms that were read so far, in the order of the file.
@@ -52,6 +54,7 @@ pub(super) struct Atoms {
     b_factor: Vec<f64>,
     /// The letter of the alternate location and the insertion code of the residue, for each atom.
     letters: Vec<[u8; 2]>,
+    serial: Vec<f64>,
     has_alternates: bool,
     /// Indices of atoms without a symbol whose name means calcium or, in the wrong columns, the alpha carbon.
     doubtful: Vec<usize>,
@@ -72,6 +75,7 @@ impl Atoms {
             occupancy: Vec::with_capacity(atoms),
             b_factor: Vec::with_capacity(atoms),
             letters: Vec::with_capacity(atoms),
+            serial: Vec::with_capacity(atoms),
             ..Self::default()
         }
     }
@@ -103,6 +107,7 @@ impl Atoms {
         self.spheres.push([x, y, z, appearance.radius]);
         self.colors.push(appearance.color);
         self.letters.push([atom.letter, atom.insertion]);
+        self.serial.push(atom.serial);
         self.has_alternates |= atom.letter != b' ';
     }
 
@@ -166,6 +171,8 @@ impl Atoms {
         retain(&mut self.residue_number, &keep);
         retain(&mut self.occupancy, &keep);
         retain(&mut self.b_factor, &keep);
+        retain(&mut self.letters, &keep);
+        retain(&mut self.serial, &keep);
         self.species.retain(&keep);
         for labels in [&mut self.name, &mut self.residue, &mut self.chain, &mut self.record] {
             labels.retain(&keep);
@@ -214,6 +221,19 @@ impl Atoms {
         if !self.entity.indices.is_empty() {
             let values = self.entity.into_values();
             loaded.columns.push(Column { name: "entity".to_owned(), values });
+        }
+        // Columns that say nothing are left out: no insertion codes, and numbers that follow each other from 1.
+        if self.letters.iter().any(|letters| letters[1] != b' ') {
+            let mut codes = LabelsBuilder::with_capacity(self.letters.len());
+            for letters in &self.letters {
+                codes.push(letters[1..].trim_ascii());
+            }
+            loaded.columns.push(Column { name: "icode".to_owned(), values: codes.into_values() });
+        }
+        let is_usual = |(index, serial): (usize, &f64)| (*serial - index as f64).to_bits() == 1.0_f64.to_bits();
+        let is_known = self.serial.iter().all(|serial| serial.is_finite());
+        if is_known && !self.serial.iter().enumerate().all(is_usual) {
+            loaded.columns.push(Column { name: "serial".to_owned(), values: ColumnValues::Numbers(self.serial) });
         }
         loaded.notes = unknown.iter().map(UnknownSpecies::note).chain(doubtful).chain(left_out).collect();
         loaded.unknown = unknown;

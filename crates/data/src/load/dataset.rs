@@ -28,6 +28,9 @@ pub struct Dataset {
     pub cell_origin: [f64; 3],
     /// The directions of the cell's edges in which the data repeats.
     pub is_periodic: [bool; 3],
+    /// Is true if the cell is that of a crystal whose symmetry is not applied, so that the spheres are only a part of what
+    /// is in it. Distances in selections do not reach across its borders then.
+    pub is_part_of_crystal: bool,
     /// Number of frames in the file; `None` if the file was not read to its end.
     pub frames: Option<usize>,
     /// Notes for the user that are not errors, one line each and without the file's name.
@@ -106,6 +109,7 @@ impl Dataset {
             cell: None,
             cell_origin: [0.0; 3],
             is_periodic: [true; 3],
+            is_part_of_crystal: false,
             frames: None,
             notes: Vec::new(),
             unknown: None,

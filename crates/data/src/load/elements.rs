@@ -69,6 +69,11 @@ pub(super) fn element(species: &str) -> Option<Element> {
     }
 }
 
+/// Returns the symbol of the element of a species, which is H for the isotopes of hydrogen.
+pub(crate) fn element_symbol(species: &str) -> Option<&'static str> {
+    element(species).map(|element| element.symbol())
+}
+
 fn by_symbol(symbol: &str) -> Option<Element> {
     // Deuterium and tritium have their own symbols but are isotopes of hydrogen.
     let symbol = if matches!(symbol, "D" | "T") { "H" } else { symbol };

@@ -31,10 +31,11 @@ mod spacing;
 mod table;
 mod topology;
 
+pub(crate) use atoms::element::Residue;
 pub use cone_kind::ConeKind;
 pub use cones::ConeSet;
 pub use dataset::{Column, ColumnValues, Dataset, Labels};
-pub(crate) use elements::{Covalent, covalent};
+pub(crate) use elements::{Covalent, covalent, element_symbol};
 pub use error::{LoadError, LoadErrorKind, Place};
 pub use file_rows::FileRows;
 pub use format::{Format, Options};

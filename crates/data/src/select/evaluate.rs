@@ -1,220 +1,183 @@
-//! Evaluates expressions, one comparison after the other, for all spheres at once.
+//! Evaluates selections, one part after the other, for all spheres at once.
 
-use std::borrow::Cow;
+use std::collections::HashSet;
 
-use super::parse::{Comparison, Expression, Operand, Operator, SelectError, Value, error_at};
-use crate::column::ColumnError;
-use crate::column::{NamedColumn, column};
-use crate::load::{Column, ColumnValues, Labels};
-use pinhole::internals::text::{listed, one_line, shortened};
-use pinhole::scene::sphere_array::SphereArray;
+use glam::DVec3;
 
-const NO_COLUMN: &str = "this compares two fixed values; one of them must be a column, without quotation marks";
-
-/// The data on which expressions are evaluated.
-struct Data<'a> {
-    text: &'a str,
-    spheres: &'a SphereArray,
-    columns: &'a [Column],
-    notes: Vec<String>,
-}
-
-enum Side<'a> {
-    Number(f64),
-    Text,
-    Column(NamedColumn<'a>),
-    /// A word that is neither a number nor the name of a column.
-    Unknown(ColumnError),
-}
+use super::data::{Data, Values};
+use super::error::SelectError;
+use super::near::{Grid, is_somewhere};
+use super::tree::{Bonded, Near, Node, Place, Word};
+use crate::cell::PeriodicCell;
+use crate::load::Dataset;
 
 /// Returns for each sphere whether it matches, and notes for the user.
-pub(super) fn evaluate(
-    expression: &Expression,
-    text: &str,
-    spheres: &SphereArray,
-    columns: &[Column],
-) -> Result<(Vec<bool>, Vec<String>), SelectError> {
-    let mut data = Data { text, spheres, columns, notes: Vec::new() };
-    let matches = data.matches(expression)?;
+pub(super) fn evaluate(node: &Node, text: &str, loaded: &Dataset) -> Result<(Vec<bool>, Vec<String>), SelectError> {
+    let mut data = Data::new(text, loaded);
+    let matches = data.matches(node, false, None)?;
     Ok((matches, data.notes))
 }
 
-impl<'a> Data<'a> {
-    fn matches(&mut self, expression: &Expression) -> Result<Vec<bool>, SelectError> {
-        let (parts, is_all) = match expression {
-            Expression::Compare(comparison) => return self.compare(comparison),
-            Expression::All(parts) => (parts, true),
-            Expression::Any(parts) => (parts, false),
+/// Returns true for spheres that are still to be tested.
+fn is_kept(kept: Option<&[bool]>, index: usize) -> bool {
+    kept.is_none_or(|kept| kept[index])
+}
+
+impl Data<'_> {
+    /// Returns the spheres for which a node is true, or false if it is negated. What is unknown is neither. Of spheres
+    /// that are not `kept`, any result will do.
+    fn matches(&mut self, node: &Node, is_negated: bool, kept: Option<&[bool]>) -> Result<Vec<bool>, SelectError> {
+        let set = match node {
+            Node::Not(node) => return self.matches(node, !is_negated, kept),
+            Node::All(parts) => return self.joined(parts, !is_negated, is_negated, kept),
+            Node::Any(parts) => return self.joined(parts, is_negated, is_negated, kept),
+            Node::Compare { sides, operators } => return self.compare(sides, operators, is_negated),
+            Node::List { key, values, is_negated: is_other } => return self.list(key, values, is_negated != *is_other),
+            Node::Near { kind, reach, of, at } => return self.near(*kind, *reach, of, *at, (is_negated, kept)),
+            Node::Unknown(word) => return Err(self.unknown(word)),
+            Node::Class(word) => self.class(word)?,
+            Node::Nearest { count, of, at } => self.nearest(*count, of, *at)?,
+            Node::Bonded { kind, steps, of, at } => self.bonded(*kind, *steps, of, *at)?,
+            Node::Same { key, of } => self.same(key, of)?,
         };
-        let mut joined = vec![is_all; self.spheres.len()];
+        Ok(if is_negated { set.into_iter().map(|is| !is).collect() } else { set })
+    }
+
+    fn joined(
+        &mut self,
+        parts: &[Node],
+        is_all: bool,
+        is_negated: bool,
+        kept: Option<&[bool]>,
+    ) -> Result<Vec<bool>, SelectError> {
+        let mut joined: Option<Vec<bool>> = None;
         for part in parts {
-            let matches = self.matches(part)?;
-            for (joined, is_match) in joined.iter_mut().zip(matches) {
-                *joined = if is_all { *joined && is_match } else { *joined || is_match };
+            let still = joined.as_deref().filter(|_| is_all).or(kept);
+            let matches = self.matches(part, is_negated, still)?;
+            match &mut joined {
+                None => {
+                    let within = |(index, is): (usize, bool)| is && is_kept(kept, index);
+                    joined = Some(matches.into_iter().enumerate().map(within).collect());
+                }
+                Some(joined) => {
+                    for (joined, is_match) in joined.iter_mut().zip(matches) {
+                        *joined = if is_all { *joined && is_match } else { *joined || is_match };
+                    }
+                }
             }
         }
-        Ok(joined)
+        Ok(joined.unwrap_or_default())
     }
 
-    fn error(&self, operand: &Operand, problem: impl Into<String>) -> SelectError {
-        error_at(self.text, operand.at, problem)
-    }
-
-    fn side(&self, operand: &Operand) -> Result<Side<'a>, SelectError> {
-        let found = |name: &str| column(name, self.spheres, self.columns);
-        match &operand.value {
-            Value::Text(_) => Ok(Side::Text),
-            Value::Column(name) => {
-                found(name).map(Side::Column).map_err(|error| self.error(operand, error.to_string()))
-            }
-            Value::Word(word) => match (number(word), found(word)) {
-                (Some(number), _) => Ok(Side::Number(number)),
-                (None, Ok(found)) => Ok(Side::Column(found)),
-                (None, Err(error @ ColumnError::Unknown { .. })) => Ok(Side::Unknown(error)),
-                (None, Err(error)) => Err(self.error(operand, error.to_string())),
-            },
-        }
-    }
-
-    fn compare(&mut self, comparison: &Comparison) -> Result<Vec<bool>, SelectError> {
-        let Comparison { sides: [left, right], operator } = comparison;
-        let (left_side, right_side) = (self.side(left)?, self.side(right)?);
-        if let Some((name, labels)) = texts(&left_side) {
-            return self.compare_text(name, labels, (right, &right_side), *operator);
-        }
-        if let Some((name, labels)) = texts(&right_side) {
-            return self.compare_text(name, labels, (left, &left_side), operator.mirrored());
-        }
-        let [a, b] = [self.numbers(left, left_side, &right.value)?, self.numbers(right, right_side, &left.value)?];
-        Ok(match (a, b) {
-            (Numbers::Column(a), Numbers::Column(b)) => {
-                a.iter().zip(b.iter()).map(|(a, b)| operator.holds(*a, *b)).collect()
-            }
-            (Numbers::Column(a), Numbers::One(b)) => a.iter().map(|a| operator.holds(*a, b)).collect(),
-            (Numbers::One(a), Numbers::Column(b)) => b.iter().map(|b| operator.holds(a, *b)).collect(),
-            (Numbers::One(_), Numbers::One(_)) => {
-                return Err(self.error(left, NO_COLUMN));
+    /// The spheres of a place, all of them, and the points from which distances are measured.
+    fn place(&mut self, of: &Place) -> Result<(Vec<bool>, Vec<DVec3>), SelectError> {
+        Ok(match of {
+            Place::Point(point) => (vec![false; self.len()], vec![(*point).into()]),
+            Place::Spheres(node) => {
+                let set = self.matches(node, false, None)?;
+                let points = self.points();
+                let chosen = points.iter().zip(&set).filter(|(_, is)| **is).map(|(point, _)| *point).collect();
+                (set, chosen)
             }
         })
     }
 
-    /// Returns the numbers of one side of a comparison in which neither side is a column of text.
-    fn numbers(&self, operand: &Operand, side: Side<'a>, other: &Value) -> Result<Numbers<'a>, SelectError> {
-        let problem = match side {
-            Side::Number(number) => return Ok(Numbers::One(number)),
-            Side::Column(NamedColumn { values, .. }) => match values {
-                Cow::Borrowed(ColumnValues::Numbers(values)) => {
-                    return Ok(Numbers::Column(Cow::Borrowed(values)));
-                }
-                Cow::Owned(ColumnValues::Numbers(values)) => {
-                    return Ok(Numbers::Column(Cow::Owned(values)));
-                }
-                // Columns of text were handled before.
-                Cow::Borrowed(ColumnValues::Labels(_)) | Cow::Owned(ColumnValues::Labels(_)) => NO_COLUMN.to_owned(),
-            },
-            Side::Unknown(error) => error.to_string(),
-            Side::Text => {
-                let (Value::Word(other) | Value::Column(other)) = other else {
-                    return Err(self.error(operand, NO_COLUMN));
-                };
-                match number(other) {
-                    Some(_) => NO_COLUMN.to_owned(),
-                    None if self.is_column(other) => format!(
-                        "`{}` is a text, but `{}` holds numbers",
-                        shortened(operand.value.text()),
-                        one_line(other)
-                    ),
-                    None => match column(other, self.spheres, self.columns) {
-                        Err(error) => error.to_string(),
-                        Ok(_) => NO_COLUMN.to_owned(),
-                    },
-                }
-            }
-        };
-        Err(self.error(operand, problem))
+    /// The cell across whose borders distances reach.
+    fn cell(&self) -> Option<PeriodicCell> {
+        PeriodicCell::of(self.loaded).filter(|_| !self.loaded.is_part_of_crystal)
     }
 
-    fn is_column(&self, name: &str) -> bool {
-        column(name, self.spheres, self.columns).is_ok()
+    fn too_many_images(&self, at: usize) -> SelectError {
+        self.error(at, "the periodic cell is so small that there are too many images within this distance")
     }
 
-    fn compare_text(
+    fn near(
         &mut self,
-        name: &str,
-        labels: &Labels,
-        (other, side): (&Operand, &Side<'_>),
-        operator: Operator,
+        kind: Near,
+        reach: f64,
+        of: &Place,
+        at: usize,
+        (is_negated, kept): (bool, Option<&[bool]>),
     ) -> Result<Vec<bool>, SelectError> {
-        let wanted = other.value.text();
-        let is_there = labels.names.iter().any(|label| label == wanted);
-        let is_name = matches!(other.value, Value::Column(_));
-        if is_name || (texts(side).is_some() && !is_there) {
-            let problem = format!(
-                "`{}` is a column of text, too, and columns of text are compared only with texts; put quotation marks \
-                 around a text",
-                one_line(wanted)
-            );
-            return Err(self.error(other, problem));
-        }
-        let wanted_number = match other.value {
-            Value::Word(_) => number(wanted),
-            _ => None,
+        let (set, chosen) = self.place(of)?;
+        let cell = match kind {
+            Near::Periodic => match PeriodicCell::of(self.loaded) {
+                Some(cell) => Some(cell),
+                None => return Err(self.error(at, "pbwithin needs a periodic cell, and the file has none")),
+            },
+            _ => self.cell(),
         };
-        let is_equality = operator.is_equality();
-        if !is_equality && wanted_number.is_none() {
-            let name = one_line(name);
-            let problem = format!("`{name}` holds text, which is compared only with == and !=, or with a number");
-            return Err(self.error(other, problem));
-        }
-        let is_equal = |label: &String| {
-            let numbers = number(label).zip(wanted_number);
-            label == wanted || numbers.is_some_and(|(a, b)| Operator::EQUAL.holds(a, b))
+        let grid = Grid::new(chosen.into_iter(), reach, cell).ok_or_else(|| self.too_many_images(at))?;
+        let points = self.points();
+        let is_match = |index: usize| {
+            let point = points[index];
+            let is_within = match set[index] {
+                _ if !is_kept(kept, index) => return false,
+                true if kind == Near::Expand => true,
+                // Nothing is known about a sphere that is nowhere.
+                _ if !is_somewhere(point) => return false,
+                true => kind != Near::Around,
+                false => grid.has_near(point),
+            };
+            (is_within == (kind != Near::Beyond)) != is_negated
         };
-        let label_matches = |label: &String| match operator {
-            _ if label.trim().is_empty() => false,
-            _ if is_equality => is_equal(label) == (operator == Operator::EQUAL),
-            _ => number(label).zip(wanted_number).is_some_and(|(a, b)| operator.holds(a, b)),
-        };
-        let are_matches: Vec<bool> = labels.names.iter().map(label_matches).collect();
-        if is_equality && !labels.names.is_empty() && !labels.names.iter().any(is_equal) {
-            self.notes.push(absent(name, wanted, labels));
+        Ok((0..self.len()).map(is_match).collect())
+    }
+
+    fn nearest(&mut self, count: usize, of: &Place, at: usize) -> Result<Vec<bool>, SelectError> {
+        let (set, chosen) = self.place(of)?;
+        let points = self.points();
+        let others = (0..points.len()).filter(|index| !set[*index] && is_somewhere(points[*index]));
+        let somewhere = points.iter().chain(&chosen).filter(|point| is_somewhere(**point));
+        let ends = somewhere.fold([DVec3::MAX, DVec3::MIN], |[low, high], point| [low.min(*point), high.max(*point)]);
+        let size = (ends[1] - ends[0]).max(DVec3::splat(1e-6));
+        let wanted = count.min(others.clone().count());
+        // In a cell, no point is farther from an image than all its edges together.
+        let far =
+            self.cell().map_or(size, |cell| DVec3::splat(cell.edges.to_cols_array().iter().map(|x| x.abs()).sum()));
+        let mut reach = size.max_element() / 64.0;
+        loop {
+            let is_last = reach > 2.0 * far.length();
+            let grid = Grid::new(chosen.iter().copied(), reach, self.cell()).ok_or_else(|| self.too_many_images(at))?;
+            let mut found: Vec<(f64, usize)> =
+                others.clone().filter_map(|index| Some((grid.nearest(points[index])?, index))).collect();
+            if found.len() >= wanted || is_last || chosen.is_empty() {
+                found.sort_by(|a, b| a.0.total_cmp(&b.0).then(a.1.cmp(&b.1)));
+                let mut matches = vec![false; points.len()];
+                found.iter().take(wanted).for_each(|(_, index)| matches[*index] = true);
+                return Ok(matches);
+            }
+            reach *= 2.0;
         }
-        let of = |index: &u32| are_matches.get(*index as usize).copied().unwrap_or(false);
-        Ok(labels.indices.iter().map(of).collect())
+    }
+
+    fn bonded(&mut self, kind: Bonded, steps: usize, of: &Node, at: usize) -> Result<Vec<bool>, SelectError> {
+        let set = self.matches(of, false, None)?;
+        let end = self.text[at..].find(char::is_whitespace).map_or(self.text.len(), |length| at + length);
+        let word = Word { text: self.text[at..end].to_owned(), at };
+        let graph = self.graph(&word)?;
+        Ok(match kind {
+            Bonded::To => graph.bonded_to(&set),
+            Bonded::Neighbor => graph.bonded_to(&set).into_iter().zip(set).map(|(is, was)| is && !was).collect(),
+            Bonded::Within => graph.within(&set, steps),
+        })
+    }
+
+    fn same(&mut self, key: &Word, of: &Node) -> Result<Vec<bool>, SelectError> {
+        let set = self.matches(of, false, None)?;
+        if key.text == "residue" {
+            let residues = self.residues(key.at)?;
+            return Ok(groups(residues.len(), &set, |index| residues[index]));
+        }
+        Ok(match self.source(key)?.values {
+            Values::Labels(labels) => groups(set.len(), &set, |index| labels.indices[index]),
+            Values::Numbers(numbers) => groups(set.len(), &set, |index| (numbers[index] + 0.0).to_bits()),
+        })
     }
 }
 
-enum Numbers<'a> {
-    One(f64),
-    Column(Cow<'a, [f64]>),
-}
-
-impl Value {
-    fn text(&self) -> &str {
-        match self {
-            Self::Word(text) | Self::Text(text) | Self::Column(text) => text,
-        }
-    }
-}
-
-/// The name and the texts of a column of text.
-fn texts<'a>(side: &'a Side<'_>) -> Option<(&'a str, &'a Labels)> {
-    let Side::Column(NamedColumn { name, values, .. }) = side else { return None };
-    match values.as_ref() {
-        ColumnValues::Labels(labels) => Some((name, labels)),
-        ColumnValues::Numbers(_) => None,
-    }
-}
-
-/// Parses a word as a number. Words such as `inf` and `nan` are names.
-fn number(word: &str) -> Option<f64> {
-    let unsigned = word.strip_prefix(['+', '-']).unwrap_or(word);
-    let is_number = unsigned.starts_with(|c: char| c.is_ascii_digit() || c == '.');
-    is_number.then(|| word.parse().ok()).flatten()
-}
-
-fn absent(column: &str, wanted: &str, labels: &Labels) -> String {
-    let names = labels.names.iter().filter(|label| !label.trim().is_empty());
-    let shown = listed(names.map(|label| shortened(label)), 8);
-    format!("no sphere has the {} `{}`; there are {shown}", one_line(column), shortened(wanted))
+/// All spheres that are in a group with one of the set.
+fn groups<T: Eq + std::hash::Hash>(count: usize, set: &[bool], group: impl Fn(usize) -> T) -> Vec<bool> {
+    let chosen: HashSet<T> = (0..count).filter(|index| set[*index]).map(&group).collect();
+    (0..count).map(|index| chosen.contains(&group(index))).collect()
 }

@@ -1,10 +1,13 @@
 //! Selects spheres by an expression over the columns of their data.
 //!
-//! A [`Selection`] is a text such as `species == O and z > 3 and |v| < 2`. It compares columns, those of
-//! [`column()`](crate::column::column()), with numbers, texts or other columns, by `==`, `!=`, `<`, `<=`, `>`,
-//! `>=`, and joins comparisons by `and`, `or`, `not` (or `&&`, `||`, `!`) and parentheses. A missing value, which is NaN
-//! or an empty text, never matches, whatever stands before it: neither `z > 3` nor `not z > 3` selects a sphere whose
-//! `z` is NaN. Nothing here accesses the file system.
+//! A [`Selection`] is a text such as `species == O and z > 3 and |v| < 2` or `byres within 5 of resname HEM`. It has the
+//! words that VMD, `MDAnalysis` and `PyMOL` share: lists of values (`resid 5 to 10`, `name CA CB`), comparisons of arithmetic
+//! over columns, those of [`column()`](crate::column::column()), classes (`protein`, `water`), distances, and bonds. A
+//! missing value, which is NaN or an empty text, never matches, whatever stands before it: neither `z > 3` nor
+//! `not z > 3` selects a sphere whose `z` is NaN. Nothing here accesses the file system.
+//!
+//! A selection is parsed once, into a tree whose depth is limited. Words get their meaning when it is evaluated, because a
+//! column of the data comes before a word of the language.
 //!
 //! ```
 //! use pinhole::SphereArray;
@@ -19,17 +22,32 @@
 //! # Ok::<(), pinhole_data::select::SelectError>(())
 //! ```
 
+mod arithmetic;
+mod before;
+mod classes;
+mod compare;
+mod data;
+mod error;
 mod evaluate;
+mod foreign;
+mod graph;
+mod near;
 mod parse;
+mod residues;
+mod scan;
+#[cfg(test)]
+mod tests;
+mod texts;
+mod tree;
+mod words;
 
-pub use parse::SelectError;
+pub use error::SelectError;
 
 use std::fmt;
 use std::str::FromStr;
 
-use crate::load::{Column, Dataset};
+use crate::load::Dataset;
 use pinhole::internals::text::one_line;
-use pinhole::scene::sphere_array::SphereArray;
 
 /// An expression that chooses the spheres to keep.
 ///
@@ -37,7 +55,7 @@ use pinhole::scene::sphere_array::SphereArray;
 #[derive(Clone, Debug)]
 pub struct Selection {
     text: String,
-    expression: parse::Expression,
+    parsed: parse::Parsed,
 }
 
 /// The result of applying a selection.
@@ -48,7 +66,7 @@ pub struct KeptSpheres {
     pub kept: usize,
     /// The number of spheres before the selection.
     pub of: usize,
-    /// Notes for the user, one line each: texts that no sphere has.
+    /// Notes for the user, one line each: texts that no sphere has, and how the expression was read.
     pub notes: Vec<String>,
 }
 
@@ -68,7 +86,7 @@ impl FromStr for Selection {
     type Err = SelectError;
 
     fn from_str(text: &str) -> Result<Self, SelectError> {
-        Ok(Self { text: text.to_owned(), expression: parse::parse(text)? })
+        Ok(Self { text: text.to_owned(), parsed: parse::parse(text)? })
     }
 }
 
@@ -76,9 +94,10 @@ impl Selection {
     /// Returns for each sphere whether it matches, and notes for the user.
     ///
     /// # Errors
-    /// Returns an error if the expression names a column that the data lacks, or compares text with numbers.
-    pub fn matches(&self, spheres: &SphereArray, columns: &[Column]) -> Result<(Vec<bool>, Vec<String>), SelectError> {
-        evaluate::evaluate(&self.expression, &self.text, spheres, columns)
+    /// Returns an error if the expression needs what the data lacks, such as a column, or compares text with numbers.
+    pub fn matches(&self, data: &Dataset) -> Result<(Vec<bool>, Vec<String>), SelectError> {
+        let (matches, found) = evaluate::evaluate(&self.parsed.node, &self.text, data)?;
+        Ok((matches, self.parsed.notes.iter().cloned().chain(found).collect()))
     }
 
     /// Leaves out the spheres that do not match, as [`Dataset::keep`] does.
@@ -87,10 +106,10 @@ impl Selection {
     /// Returns the errors of [`Selection::matches`], and an error if there are spheres but none matches. The data
     /// are unchanged then.
     pub fn apply(&self, loaded: &mut Dataset) -> Result<KeptSpheres, SelectError> {
-        let (is_kept, notes) = self.matches(&loaded.spheres, &loaded.columns)?;
+        let (is_kept, notes) = self.matches(loaded)?;
         let (kept, of) = (is_kept.iter().filter(|kept| **kept).count(), is_kept.len());
         if kept == 0 && of > 0 {
-            let hint = notes.first().map_or(String::new(), |note| format!("; {note}"));
+            let hint = self.parsed.remedy.as_ref().or(notes.first()).map_or(String::new(), |note| format!("; {note}"));
             return Err(SelectError::Nothing { expression: one_line(&self.text), of, hint });
         }
         loaded.keep(&is_kept);

@@ -1,279 +1,273 @@
-//! Parses expressions, by recursive descent.
+//! Parses selections: operators between terms, and those before and after them.
 
-use std::cmp::Ordering;
+use super::error::{SelectError, error_at};
+use super::foreign;
+use super::scan::Scanner;
+use super::tree::{Bonded, Near, Node, Place, Step, Word};
+use super::words::{class_of, is_joint, key_of};
+use pinhole::internals::text::shortened;
 
-use pinhole::internals::text::one_line;
-
-/// Maximum depth of nested parentheses, so that the stack suffices.
+/// The deepest nesting, so that the stack suffices.
 const DEEPEST: usize = 100;
 
-/// A part of an expression. Negations are moved into the operators, so that missing values match neither a
-/// comparison nor its opposite.
+/// A selection that was read.
 #[derive(Clone, Debug)]
-pub(super) enum Expression {
-    /// All of these must match.
-    All(Vec<Self>),
-    /// At least one of these must match.
-    Any(Vec<Self>),
-    Compare(Comparison),
+pub(super) struct Parsed {
+    pub(super) node: Node,
+    pub(super) notes: Vec<String>,
+    /// The remedy if nothing is selected, because an operator takes all that follows.
+    pub(super) remedy: Option<String>,
 }
 
-#[derive(Clone, Debug)]
-pub(super) struct Comparison {
-    pub(super) sides: [Operand; 2],
-    pub(super) operator: Operator,
-}
-
-#[derive(Clone, Debug)]
-pub(super) struct Operand {
-    pub(super) value: Value,
-    /// Offset of its first byte.
-    pub(super) at: usize,
-}
-
-#[derive(Clone, Debug)]
-pub(super) enum Value {
-    /// A number, the name of a column, or a text without quotation marks, depending on the other side.
-    Word(String),
-    /// A text in quotation marks.
-    Text(String),
-    /// The name of a column, such as `|v|`, or in backquotes.
-    Column(String),
-}
-
-/// The orders of its two sides that a comparison accepts.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(super) struct Operator {
-    less: bool,
-    equal: bool,
-    greater: bool,
-}
-
-impl Operator {
-    pub(super) const EQUAL: Self = Self::new(false, true, false);
-
-    /// All signs. A sign comes before its own prefixes.
-    const SIGNS: [(&'static str, Self); 6] = [
-        ("==", Self::EQUAL),
-        ("!=", Self::new(true, false, true)),
-        ("<=", Self::new(true, true, false)),
-        (">=", Self::new(false, true, true)),
-        ("<", Self::new(true, false, false)),
-        (">", Self::new(false, false, true)),
-    ];
-
-    const fn new(less: bool, equal: bool, greater: bool) -> Self {
-        Self { less, equal, greater }
-    }
-
-    /// Returns the operator that holds exactly where this one does not.
-    fn opposite(self) -> Self {
-        Self::new(!self.less, !self.equal, !self.greater)
-    }
-
-    /// Returns the operator for exchanged sides.
-    pub(super) fn mirrored(self) -> Self {
-        Self::new(self.greater, self.equal, self.less)
-    }
-
-    /// Whether a comparison asks only if the sides are equal.
-    pub(super) fn is_equality(self) -> bool {
-        self.less == self.greater
-    }
-
-    /// Compares two numbers. NaN never matches.
-    pub(super) fn holds(self, a: f64, b: f64) -> bool {
-        a.partial_cmp(&b).is_some_and(|order| match order {
-            Ordering::Less => self.less,
-            Ordering::Equal => self.equal,
-            Ordering::Greater => self.greater,
-        })
+pub(super) fn parse(text: &str) -> Result<Parsed, SelectError> {
+    let scanner = Scanner { text, at: 0 };
+    let mut parser = Parser { scanner, depth: 0, steps: Vec::new(), notes: Vec::new(), remedy: None };
+    let node = parser.selection()?;
+    match parser.scanner.rest() {
+        "" => Ok(Parsed { node, notes: parser.notes, remedy: parser.remedy }),
+        _ => Err(parser.scanner.wanted("`and`, `or` or the end")),
     }
 }
 
-pub(super) fn parse(text: &str) -> Result<Expression, SelectError> {
-    let mut parser = Parser { text, at: 0, depth: 0 };
-    let parsed = parser.any(false)?;
-    match parser.rest() {
-        "" => Ok(parsed),
-        _ => Err(parser.wanted("`and`, `or` or the end")),
-    }
-}
-
-pub(super) fn error_at(text: &str, at: usize, problem: impl Into<String>) -> SelectError {
-    let character = text.get(..at).unwrap_or_default().chars().count() + 1;
-    SelectError::At { expression: one_line(text), character, problem: problem.into() }
-}
-
-struct Parser<'a> {
-    text: &'a str,
-    /// Offset of the next byte.
-    at: usize,
+pub(super) struct Parser<'a> {
+    pub(super) scanner: Scanner<'a>,
     depth: usize,
+    /// The arithmetic that is being read.
+    pub(super) steps: Vec<Step>,
+    pub(super) notes: Vec<String>,
+    pub(super) remedy: Option<String>,
 }
 
-fn ends_word(c: char) -> bool {
-    c.is_whitespace() || "()<>=!&|\"'`".contains(c)
+/// Terms that are joined by `and`.
+struct Joined {
+    node: Node,
+    /// Their start and their end.
+    span: [usize; 2],
+    /// The end of the first term and the start of the second, if no `and` stands between them.
+    silent: Option<[usize; 2]>,
 }
 
-impl<'a> Parser<'a> {
-    /// Skips white space, and returns the remaining text.
-    fn rest(&mut self) -> &'a str {
-        let rest = self.text.get(self.at..).unwrap_or_default();
-        let trimmed = rest.trim_start();
-        self.at += rest.len() - trimmed.len();
-        trimmed
-    }
-
-    fn error(&self, problem: impl Into<String>) -> SelectError {
-        error_at(self.text, self.at, problem)
-    }
-
-    fn wanted(&mut self, wanted: &'static str) -> SelectError {
-        let rest = self.rest();
-        let found = match (self.word(), rest.chars().next()) {
-            ("", None) => "the end".to_owned(),
-            ("", Some(sign)) => format!("`{sign}`"),
-            (word, _) => format!("`{}`", pinhole::internals::text::shortened(word)),
-        };
-        self.error(format!("{wanted} belongs here, but {found} stands here"))
-    }
-
-    /// Takes the next word; empty if there is none.
-    fn word(&mut self) -> &'a str {
-        let rest = self.rest();
-        &rest[..rest.find(ends_word).unwrap_or(rest.len())]
-    }
-
-    fn take(&mut self, sign: &str) -> bool {
-        let is_next = self.rest().starts_with(sign);
-        self.at += if is_next { sign.len() } else { 0 };
-        is_next
-    }
-
-    /// Takes a word, or the sign with the same meaning.
-    fn take_either(&mut self, word: &str, sign: &str) -> bool {
-        if self.word().eq_ignore_ascii_case(word) {
-            self.at += word.len();
-            return true;
-        }
-        self.take(sign)
-    }
-
-    /// Parses parts that are joined by `or`, or the negation of that.
-    fn any(&mut self, is_negated: bool) -> Result<Expression, SelectError> {
-        let mut parts = vec![self.all(is_negated)?];
-        while self.take_either("or", "||") {
-            parts.push(self.all(is_negated)?);
-        }
-        if self.rest().starts_with('|') {
-            return Err(self.error("write ||, or the word"));
-        }
-        Ok(joined(parts, if is_negated { Expression::All } else { Expression::Any }))
-    }
-
-    /// Parses parts that are joined by `and`, or the negation of that.
-    fn all(&mut self, is_negated: bool) -> Result<Expression, SelectError> {
-        let mut parts = vec![self.one(is_negated)?];
-        while self.take_either("and", "&&") {
-            parts.push(self.one(is_negated)?);
-        }
-        if self.rest().starts_with('&') {
-            return Err(self.error("write &&, or the word"));
-        }
-        Ok(joined(parts, if is_negated { Expression::Any } else { Expression::All }))
-    }
-
-    /// Parses a comparison or an expression in parentheses, with or without negations.
-    fn one(&mut self, is_negated: bool) -> Result<Expression, SelectError> {
-        let mut is_negated = is_negated;
-        while !self.rest().starts_with("!=") && self.take_either("not", "!") {
-            is_negated = !is_negated;
-        }
-        let open = self.at;
-        if !self.take("(") {
-            return self.comparison(is_negated);
-        }
+impl Parser<'_> {
+    /// Parses what is nested.
+    pub(super) fn nested<T>(
+        &mut self,
+        parse: impl FnOnce(&mut Self) -> Result<T, SelectError>,
+    ) -> Result<T, SelectError> {
         if self.depth == DEEPEST {
-            self.at = open;
-            return Err(self.error(format!("parentheses lie in more than {DEEPEST} others; simplify the expression")));
+            return Err(self
+                .scanner
+                .error(format!("parentheses lie in more than {DEEPEST} others; simplify the expression")));
         }
         self.depth += 1;
-        let inside = self.any(is_negated)?;
+        let parsed = parse(self);
         self.depth -= 1;
-        match self.rest() {
-            "" => {
-                self.at = open;
-                Err(self.error("there is no closing )"))
+        parsed
+    }
+
+    /// The error that a parenthesis is not closed.
+    pub(super) fn unclosed(&self, open: usize) -> String {
+        let character = self.scanner.text.get(..open).unwrap_or_default().chars().count() + 1;
+        format!("the parenthesis at {character} is not closed: there is no closing )")
+    }
+
+    /// Takes the parenthesis that closes the one at `open`.
+    pub(super) fn close(&mut self, open: usize) -> Result<(), SelectError> {
+        match self.scanner.rest() {
+            "" => Err(error_at(self.scanner.text, open, self.unclosed(open))),
+            _ if self.scanner.take(")") => Ok(()),
+            _ => Err(self.scanner.wanted("`and`, `or` or `)`")),
+        }
+    }
+
+    /// Parses a selection up to its end or the next parenthesis that closes.
+    pub(super) fn selection(&mut self) -> Result<Node, SelectError> {
+        self.nested(|parser| {
+            let mut node = parser.any()?;
+            for _ in 0..DEEPEST {
+                let (made, is_after) = parser.after(node)?;
+                node = match is_after {
+                    false => return Ok(made),
+                    true if parser.take_and() => Node::All(vec![made, parser.any()?]),
+                    true if parser.take_or() => Node::Any(vec![made, parser.any()?]),
+                    true => made,
+                };
             }
-            _ if self.take(")") => Ok(inside),
-            _ => Err(self.wanted("`and`, `or` or `)`")),
-        }
+            Err(parser
+                .scanner
+                .error(format!("more than {DEEPEST} operators follow each other; simplify the expression")))
+        })
     }
 
-    fn comparison(&mut self, is_negated: bool) -> Result<Expression, SelectError> {
-        let left = self.operand()?;
-        let operator = self.operator()?;
-        let Some(operator) = operator else {
-            return Err(self.wanted("a comparison, such as ==, != or <,"));
-        };
-        let right = self.operand()?;
-        let before = self.at;
-        if self.operator()?.is_some() {
-            self.at = before;
-            self.rest();
-            return Err(
-                self.error("a comparison has two sides; join two comparisons with `and`, such as 1 < z and z < 3")
-            );
-        }
-        let operator = if is_negated { operator.opposite() } else { operator };
-        Ok(Expression::Compare(Comparison { sides: [left, right], operator }))
-    }
-
-    fn operator(&mut self) -> Result<Option<Operator>, SelectError> {
-        if let Some((_, found)) = Operator::SIGNS.into_iter().find(|(sign, _)| self.take(sign)) {
-            return Ok(Some(found));
-        }
-        match self.rest().starts_with('=') {
-            true => Err(self.error("write == to compare")),
-            false => Ok(None),
-        }
-    }
-
-    fn operand(&mut self) -> Result<Operand, SelectError> {
-        const WANTED: &str = "a column, a number or a text";
-        let rest = self.rest();
-        let at = self.at;
-        let value = match rest.chars().next() {
-            Some(mark @ ('"' | '\'')) => Value::Text(self.quoted(mark)?.to_owned()),
-            Some('`') => Value::Column(self.quoted('`')?.to_owned()),
-            Some('|') => Value::Column(format!("|{}|", self.quoted('|')?.trim())),
-            _ => {
-                let word = self.word();
-                let is_joint = ["and", "or", "not"].iter().any(|joint| word.eq_ignore_ascii_case(joint));
-                if word.is_empty() || is_joint {
-                    return Err(self.wanted(WANTED));
-                }
-                self.at += word.len();
-                Value::Word(word.to_owned())
+    /// Parses terms that are joined by `or`.
+    fn any(&mut self) -> Result<Node, SelectError> {
+        let first = self.all()?;
+        let [start, end] = first.span;
+        let mut silent = first.silent.map(|split| (first.span, split));
+        let (mut parts, mut last) = (vec![first.node], [start, end]);
+        loop {
+            let at = self.scanner.at;
+            if !self.take_or() {
+                break;
             }
-        };
-        Ok(Operand { value, at })
+            let next = self.all()?;
+            silent = silent.or(next.silent.map(|split| (next.span, split)));
+            if let Some((span, split)) = silent {
+                return Err(self.two_readings(at, span, split, if span == next.span { last } else { next.span }));
+            }
+            parts.push(next.node);
+            last = next.span;
+        }
+        Ok(joined(parts, Node::Any))
     }
 
-    /// Takes the text between two equal marks, the first of which comes next.
-    fn quoted(&mut self, mark: char) -> Result<&'a str, SelectError> {
-        let inside = self.rest().get(mark.len_utf8()..).unwrap_or_default();
-        let Some(length) = inside.find(mark) else {
-            return Err(self.error(format!("there is no closing {mark}")));
+    /// The error that `or` stands beside terms that are joined without a word.
+    fn two_readings(&mut self, at: usize, span: [usize; 2], split: [usize; 2], other: [usize; 2]) -> SelectError {
+        let text = |start: usize, end: usize| shortened(self.scanner.text.get(start..end).unwrap_or_default().trim());
+        let (a, b, c) = (text(span[0], split[0]), text(split[1], span[1]), text(other[0], other[1]));
+        let problem = match span[0] < other[0] {
+            true => format!("two readings: write {a} and ({b} or {c}), or ({a} and {b}) or {c}"),
+            false => format!("two readings: write {c} or ({a} and {b}), or ({c} or {a}) and {b}"),
         };
-        self.at += length + 2 * mark.len_utf8();
-        Ok(&inside[..length])
+        self.scanner.at = at;
+        self.scanner.rest();
+        self.scanner.error(problem)
+    }
+
+    /// Parses terms that are joined by `and`, or stand side by side.
+    fn all(&mut self) -> Result<Joined, SelectError> {
+        self.scanner.rest();
+        let start = self.scanner.at;
+        let mut parts = vec![self.negated()?];
+        let (mut end, mut silent) = (self.scanner.end(), None);
+        loop {
+            let has_and = self.take_and();
+            self.scanner.rest();
+            let next = self.scanner.at;
+            if !has_and && !self.starts_term() {
+                break;
+            }
+            parts.push(self.negated()?);
+            if !has_and {
+                silent = silent.or(Some([end, next]));
+            }
+            end = self.scanner.end();
+        }
+        Ok(Joined { node: joined(parts, Node::All), span: [start, end], silent })
+    }
+
+    fn take_and(&mut self) -> bool {
+        self.scanner.take_word("and") || self.scanner.take("&&") || self.scanner.take("&")
+    }
+
+    fn take_or(&mut self) -> bool {
+        self.scanner.take_word("or") || self.scanner.take("||") || self.scanner.take("|")
+    }
+
+    /// Returns true if a term comes next, and not an operator between terms or after them.
+    fn starts_term(&mut self) -> bool {
+        let rest = self.scanner.rest();
+        let name = self.scanner.name();
+        match name {
+            "expand" | "extend" => self.is_operand(name),
+            "around" => {
+                let at = self.scanner.at;
+                self.scanner.at += name.len();
+                let is_before = self.scanner.distance(name).is_ok() && self.scanner.take_word("of");
+                self.scanner.at = at;
+                is_before
+            }
+            "" => rest.starts_with(|c: char| "(!~`'\"/:#@.".contains(c) || c.is_ascii_digit() || c == '*' || c == '-'),
+            "of" | "as" | "to" | "in" => self.is_operand(name),
+            _ => !is_joint(name) || name.eq_ignore_ascii_case("not"),
+        }
+    }
+
+    /// Returns true if a comparison follows the next word, which is therefore a column.
+    pub(super) fn is_operand(&mut self, name: &str) -> bool {
+        let at = self.scanner.at;
+        self.scanner.at += name.len();
+        let is_before_operator = self.scanner.is_before_operator();
+        self.scanner.at = at;
+        is_before_operator
+    }
+
+    /// Parses an operator after a selection. Returns false with the selection if there is none.
+    fn after(&mut self, node: Node) -> Result<(Node, bool), SelectError> {
+        self.scanner.rest();
+        let at = self.scanner.at;
+        let name = self.scanner.name();
+        let kind = match name {
+            "around" => Near::Around,
+            "expand" => Near::Expand,
+            "extend" => {
+                self.scanner.at += name.len();
+                let steps = self.scanner.count("extend")?;
+                return Ok((Node::Bonded { kind: Bonded::Within, steps, of: Box::new(node), at }, true));
+            }
+            _ => return Ok((node, false)),
+        };
+        self.scanner.at += name.len();
+        let reach = self.scanner.distance(name)?;
+        Ok((Node::Near { kind, reach, of: Box::new(Place::Spheres(node)), at }, true))
+    }
+
+    /// Parses a term or an operator before a selection, with or without negations.
+    fn negated(&mut self) -> Result<Node, SelectError> {
+        let mut is_negated = false;
+        loop {
+            let is_not = self.scanner.take_word("not") || self.scanner.take("~");
+            if !is_not && (self.scanner.rest().starts_with("!=") || !self.scanner.take("!")) {
+                break;
+            }
+            is_negated = !is_negated;
+        }
+        let node = match self.before()? {
+            Some(node) => node,
+            None => self.term()?,
+        };
+        Ok(if is_negated { Node::Not(Box::new(node)) } else { node })
+    }
+
+    /// Parses a class, a list, a comparison or a selection in parentheses.
+    fn term(&mut self) -> Result<Node, SelectError> {
+        let rest = self.scanner.rest();
+        let at = self.scanner.at;
+        if rest.starts_with('(') {
+            let Some(end) = self.scanner.closing() else {
+                return Err(error_at(self.scanner.text, at, self.unclosed(at)));
+            };
+            self.scanner.at = end;
+            let is_side =
+                self.scanner.is_before_operator() || self.scanner.rest().starts_with(['+', '-', '*', '/', '%', '^']);
+            self.scanner.at = at;
+            if !is_side {
+                self.scanner.at += 1;
+                let node = self.selection()?;
+                return self.close(at).map(|()| node);
+            }
+        }
+        if self.scanner.take("*") {
+            return Ok(Node::Class(Word { text: "all".to_owned(), at }));
+        }
+        if self.scanner.name() == "prop" && !self.is_operand("prop") {
+            self.scanner.take_word("prop");
+        }
+        let name = self.scanner.name();
+        let at = self.scanner.at;
+        if class_of(name).is_some() && key_of(name).is_none() && !self.is_operand(name) {
+            self.scanner.at += name.len();
+            return Ok(Node::Class(Word { text: name.to_lowercase(), at }));
+        }
+        let starts_foreign = rest.starts_with(['/', ':', '#', '@']) || (rest.starts_with('.') && !name.is_empty());
+        match foreign::remedy(rest).filter(|_| starts_foreign) {
+            Some(problem) => Err(self.scanner.error(problem)),
+            None => self.list_or_comparison(),
+        }
     }
 }
 
 /// Joins parts. A single part stays as it is.
-fn joined(mut parts: Vec<Expression>, joint: fn(Vec<Expression>) -> Expression) -> Expression {
+fn joined(mut parts: Vec<Node>, joint: fn(Vec<Node>) -> Node) -> Node {
     match (parts.len(), parts.pop()) {
         (1, Some(one)) => one,
         (_, last) => {
@@ -281,30 +275,4 @@ fn joined(mut parts: Vec<Expression>, joint: fn(Vec<Expression>) -> Expression) 
             joint(parts)
         }
     }
-}
-
-/// The reason why a selection cannot be read, or does not apply to the data.
-#[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
-#[non_exhaustive]
-pub enum SelectError {
-    /// A part of the expression is wrong.
-    #[error("character {character} of `{expression}`: {problem}")]
-    At {
-        /// The expression.
-        expression: String,
-        /// The character at which the wrong part begins, counted from 1.
-        character: usize,
-        /// Description of the fault.
-        problem: String,
-    },
-    /// No sphere matches.
-    #[error("`{expression}` selects none of the {of} spheres{hint}")]
-    Nothing {
-        /// The expression.
-        expression: String,
-        /// The number of spheres.
-        of: usize,
-        /// A possible reason, after a semicolon; empty if none is known.
-        hint: String,
-    },
 }

@@ -240,9 +240,9 @@ flags! {
     }
     Structure {
         "--select" "select", Text, "EXPRESSION",
-            "Render only the spheres for which an expression is true, such as 'species == O and z > 3 and |v| < 2': \
-             columns as for --color-by, == != < <= > >=, and, or, not, parentheses, and text with or without quotation \
-             marks";
+            "Render only the spheres for which an expression is true, such as 'protein and not hydrogen', 'name CA CB and \
+             resid 5 to 10', 'byres within 5 of resname HEM' or 'species == O and z > 3 and |v| < 2': the words of VMD, \
+             and columns as for --color-by";
         "--box" "box", Words(words::cell), "WIDTH" (""),
             "Draw the edges of the file's periodic cell, with this width [without a width: 1/300 of the cell's diagonal]";
         "--bonds" "bonds", Words(words::bonds), "FACTOR" (""),

@@ -347,7 +347,7 @@ fn loaded() -> Dataset {
 
 fn selected(text: &str) -> Result<Vec<usize>, SelectError> {
     let loaded = loaded();
-    let (matches, _) = text.parse::<Selection>()?.matches(&loaded.spheres, &loaded.columns)?;
+    let (matches, _) = text.parse::<Selection>()?.matches(&loaded)?;
     Ok((0..matches.len()).filter(|index| matches[*index]).collect())
 }
 
@@ -413,16 +413,16 @@ fn nothing_is_an_error_and_an_unknown_text_a_note() {
     let apply = |text: &str, loaded: &mut Dataset| text.parse::<Selection>().unwrap().apply(loaded);
     let error = apply("x > 9", &mut loaded).unwrap_err();
     assert_eq!(error.to_string(), "`x > 9` selects none of the 6 spheres");
-    let error = apply("species == o", &mut loaded).unwrap_err();
+    let error = apply("species == Q", &mut loaded).unwrap_err();
     assert_eq!(
         error.to_string(),
-        "`species == o` selects none of the 6 spheres; no sphere has the species `o`; there are H, O, Fe"
+        "`species == Q` selects none of the 6 spheres; no sphere has the species Q; there are H, O, Fe"
     );
     // NaN makes columns differ from themselves.
     assert_eq!((&loaded.spheres, loaded.columns.len()), (&before.spheres, before.columns.len()));
     let kept = apply("chain != B", &mut loaded).unwrap();
     assert_eq!((kept.kept, kept.of), (5, 6));
-    assert_eq!(kept.notes, ["no sphere has the chain `B`; there are A, x"]);
+    assert_eq!(kept.notes, ["no sphere has the chain B; there are A, x"]);
     let empty = &mut Dataset::new(SphereArray::F32(Vec::new()));
     assert_eq!(apply("x > 9", empty).unwrap().of, 0);
 }

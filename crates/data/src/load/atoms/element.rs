@@ -12,7 +12,7 @@ pub(crate) enum Residue {
 
 impl Residue {
     /// Returns the kind of a residue by its name. Names that molecular dynamics programs use are included.
-    pub(super) fn of(name: &str) -> Self {
+    pub(crate) fn of(name: &str) -> Self {
         match name {
             "ALA" | "ARG" | "ASN" | "ASP" | "CYS" | "GLN" | "GLU" | "GLY" | "HIS" | "ILE" | "LEU" | "LYS" | "MET"
             | "PHE" | "PRO" | "SER" | "THR" | "TRP" | "TYR" | "VAL" | "ASX" | "GLX" | "MSE" | "SEC" | "PYL" | "UNK"

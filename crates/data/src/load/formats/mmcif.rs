@@ -2,7 +2,7 @@
 //!
 //! Atoms are the rows of the loop with the positions of `_atom_site`. A frame is a model; models of several data blocks
 //! follow each other. Columns and the choice between alternate locations are those of PDB files, so that an entry in
-//! either format gives the same result. Where the authors' names and numbers (`auth_…`) differ from those of the
+//! either format gives the same result, but for the numbers of its atoms. Where the authors' names and numbers (`auth_…`) differ from those of the
 //! dictionary (`label_…`), the authors' count. Lengths are taken as they are, in Å.
 //!
 //! Positions that are fractions of the cell are those of the atoms that the file lists. Symmetry is not applied.
@@ -81,6 +81,7 @@ impl FrameReader for MmCif {
         let text = bytes(source, rows)?;
         let mut loaded = read_rows(&text, *lines_before, &columns, cell)?;
         loaded.cell = cell;
+        loaded.is_part_of_crystal = !columns.is_fractional;
         if columns.is_fractional {
             loaded.notes.push(
                 "only the atoms that the file lists are there; the symmetry of the crystal is not applied to them"
@@ -179,6 +180,7 @@ fn push(
         entity: columns.has[16].then(|| text(16)),
         letter: letter(14),
         insertion: letter(15),
+        serial: decimal(values[17].1).unwrap_or(f64::NAN),
     });
     Ok(())
 }

@@ -113,6 +113,8 @@ struct Reader {
     /// Line of the first atom after this record.
     after_end: Option<usize>,
     cell: Option<[[f64; 3]; 3]>,
+    /// Whether the space group of the cell is another than P 1.
+    has_symmetry: bool,
     atoms: Atoms,
 }
 
@@ -125,7 +127,9 @@ impl Reader {
             Kind::Atom => self.atom(line, text, "ATOM"),
             Kind::Hetatm => self.atom(line, text, "HETATM"),
             Kind::Cryst1 if self.before_end_of_frame() => {
-                self.cell = cell_of(&Record::new(line, text, "CRYST1")?)?;
+                let record = Record::new(line, text, "CRYST1")?;
+                self.cell = cell_of(&record)?;
+                self.has_symmetry = record.text(56, 66) != b"P 1";
                 Ok(())
             }
             Kind::Model => self.model(line),
@@ -208,6 +212,7 @@ impl Reader {
         }
         let mut loaded = self.atoms.into_loaded();
         loaded.cell = self.cell;
+        loaded.is_part_of_crystal = self.has_symmetry;
         if let Some(line) = self.after_end {
             loaded.notes.push(format!(
                 "the atoms from line {line} on are left out, because they follow the end of the structure; if they \
@@ -263,6 +268,8 @@ fn push(atoms: &mut Atoms, record: &Record<'_>) -> Result<(), LoadError> {
         record.number("z coordinate", 47, 54)?,
     ];
     let ([letter], [insertion]) = (record.bytes(17), record.bytes(27));
+    // A number of six digits begins within the name of the record, after ATOM.
+    let first_of_serial = if record.bytes::<1>(6)[0].is_ascii_digit() { 6 } else { 7 };
     atoms.push(&Atom {
         place,
         occupancy: record.number_or(1.0, "occupancy", 55, 60)?,
@@ -278,6 +285,7 @@ fn push(atoms: &mut Atoms, record: &Record<'_>) -> Result<(), LoadError> {
         entity: None,
         letter,
         insertion,
+        serial: hybrid36(record.text(first_of_serial, 11)).map_or(f64::NAN, f64::from),
     });
     Ok(())
 }

@@ -183,6 +183,7 @@ impl Reader {
             entity: None,
             letter: b' ',
             insertion: b' ',
+            serial: f64::NAN,
         });
         Ok(())
     }

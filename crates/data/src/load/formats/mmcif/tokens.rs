@@ -173,7 +173,7 @@ pub(super) fn not_a_number(text: &[u8], place: Place, what: &str) -> LoadError {
 
 /// Values of an atom that the reader uses, each with its names in the order of preference. Names given by the authors
 /// come first, because PDB files have them.
-pub(super) const SLOTS: [&[&str]; 17] = [
+pub(super) const SLOTS: [&[&str]; 18] = [
     &["cartn_x"],
     &["cartn_y"],
     &["cartn_z"],
@@ -191,6 +191,7 @@ pub(super) const SLOTS: [&[&str]; 17] = [
     &["label_alt_id"],
     &["pdbx_pdb_ins_code"],
     &["label_entity_id"],
+    &["id"],
 ];
 
 /// The columns of a loop of atoms.

@@ -163,15 +163,17 @@ const BLOCK: i32 = 36 * 36 * 36;
 /// Decodes a field that has no blanks around it; `None` if it is not a valid number.
 pub(super) fn hybrid36(text: &[u8]) -> Option<i32> {
     match *text {
-        [first @ b'A'..=b'Z', b, c, d] => base36([first, b, c, d], b'A').map(|number| number - 10 * BLOCK + 10_000),
-        [first @ b'a'..=b'z', b, c, d] => base36([first, b, c, d], b'a').map(|number| number + 16 * BLOCK + 10_000),
+        [b'A'..=b'Z', _, _, _] => base36(text, b'A').map(|number| number - 10 * BLOCK + 10_000),
+        [b'a'..=b'z', _, _, _] => base36(text, b'a').map(|number| number + 16 * BLOCK + 10_000),
+        [b'A'..=b'Z', _, _, _, _] => base36(text, b'A').map(|number| number - 360 * BLOCK + 100_000),
+        [b'a'..=b'z', _, _, _, _] => base36(text, b'a').map(|number| number + 576 * BLOCK + 100_000),
         _ => std::str::from_utf8(text).ok()?.parse().ok(),
     }
 }
 
-/// Decodes four digits in base 36. The digit 10 is the letter `ten`, and the letters after it follow.
-fn base36(digits: [u8; 4], ten: u8) -> Option<i32> {
-    digits.into_iter().try_fold(0, |number, digit| {
+/// Decodes at most five digits in base 36. The digit 10 is the letter `ten`, and the letters after it follow.
+fn base36(digits: &[u8], ten: u8) -> Option<i32> {
+    digits.iter().try_fold(0, |number, &digit| {
         let value = match digit {
             b'0'..=b'9' => digit - b'0',
             _ => digit.checked_sub(ten).filter(|letter| *letter < 26)? + 10,
