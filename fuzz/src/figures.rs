@@ -90,18 +90,30 @@ pub(crate) fn camera_path(folder: TempDir) -> Target {
     })
 }
 
-/// The expressions of the tests that select something, and those that are refused.
+/// The expressions of the tests that select something, those that are refused, and their words in other orders.
 pub(crate) fn selection(folder: TempDir) -> Target {
-    let lines = ["selected.txt", "not_selected.txt"].map(|file| text(&format!("crates/figure/tests/figures/{file}")));
     let expression = |line: &str| {
-        let before = line.split_once(" => ")?.0;
+        let before = line.split(" => ").next()?;
+        let before = ["pdb ", "xyz ", "types "].iter().find_map(|name| before.strip_prefix(name)).unwrap_or(before);
         Some(before.trim_start_matches(|c: char| c.is_ascii_digit()).trim_start().to_owned())
     };
-    let seeds: Vec<String> = lines.iter().flat_map(|file| file.lines()).filter_map(expression).collect();
-    let data = data();
+    let folders = ["crates/figure/tests/figures/", "crates/figure/tests/figures/not_", "crates/data/src/select/tests/"];
+    let mut files: Vec<String> = folders.iter().map(|start| text(&format!("{start}selected.txt"))).collect();
+    files.push(text("crates/data/src/select/tests/refused.txt"));
+    let mut seeds: Vec<String> = files.iter().flat_map(|file| file.lines()).filter_map(expression).collect();
+    let words: Vec<String> = seeds.iter().flat_map(|seed| seed.split(' ')).map(str::to_owned).collect();
+    seeds.extend((0..300_usize).map(|start| {
+        let word = |step: usize| words[(37 * start + 11 * step * step) % words.len()].as_str();
+        (0..8).map(word).collect::<Vec<_>>().join(" ")
+    }));
+    let molecule = text("crates/data/src/select/tests/molecule.pdb");
+    let molecule = load::from_bytes(molecule.as_bytes(), "a.pdb", &Options::default()).unwrap();
+    let data = [data(), molecule];
     of_text(folder, seeds, move |text| {
         let Some(selection) = checked(text.parse::<Selection>())? else { return Ok(()) };
-        checked(selection.apply(&mut data.clone()))?.map_or(Ok(()), |kept| crate::check_message(kept.notes))
+        data.iter().try_for_each(|data| {
+            checked(selection.apply(&mut data.clone()))?.map_or(Ok(()), |kept| crate::check_message(kept.notes))
+        })
     })
 }
 

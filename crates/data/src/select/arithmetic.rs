@@ -6,7 +6,7 @@ use std::rc::Rc;
 use super::data::{Data, Values};
 use super::error::SelectError;
 use super::scan::{number, range};
-use super::tree::{Operator, Side, Step, Value, ValueKind, Word};
+use super::tree::{Expression, Operator, Side, Step, Value, ValueKind, Word};
 use crate::load::Labels;
 use pinhole::internals::text::{one_line, shortened};
 
@@ -31,6 +31,8 @@ impl<'a> Data<'a> {
         operators: &[Operator],
         is_negated: bool,
     ) -> Result<Vec<bool>, SelectError> {
+        let sides: Vec<Side> = sides.iter().map(|side| self.with_own_column(side)).collect();
+        let sides = sides.as_slice();
         if let ([left, right], [operator]) = (sides, operators) {
             for (key, other) in [(left, right), (right, left)] {
                 if let Some(matches) = self.compare_with_value(key, other, *operator, is_negated)? {
@@ -63,6 +65,20 @@ impl<'a> Data<'a> {
             start += length;
         }
         Ok(matches)
+    }
+
+    /// Takes a side such as `my-column` as a column, if the file has it, and not as arithmetic.
+    fn with_own_column(&self, side: &Side) -> Side {
+        let mut side = side.clone();
+        if let (Some(value), None) = (&side.value, side.column())
+            && value.kind == ValueKind::Word
+            && number(&value.text).is_none()
+            && self.is_column(&value.text)
+        {
+            let steps = vec![Step::Column(Word { text: value.text.clone(), at: side.at })];
+            side.expression = Some(Expression { steps });
+        }
+        side
     }
 
     /// Compares a key with one text or one number, if the sides are that.

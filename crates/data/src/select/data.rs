@@ -100,6 +100,9 @@ impl<'a> Data<'a> {
                 return Err(self.error(word.at, error.map_or(String::new(), |error| error.to_string())));
             }
         };
+        // However a name is written, its values are kept once.
+        let source = self.found.get(&source.name).cloned().unwrap_or(source);
+        self.found.insert(source.name.clone(), source.clone());
         self.found.insert(word.text.clone(), source.clone());
         Ok(source)
     }
@@ -164,9 +167,10 @@ impl<'a> Data<'a> {
     pub(super) fn no_elements(&mut self) -> String {
         match self.optional("type").map(|source| source.values) {
             Some(Values::Labels(labels)) if !labels.names.is_empty() => {
-                let first = shortened(&labels.names[0]);
-                let names = listed(labels.names.iter().map(|name| shortened(name)), 8);
-                format!("the file has no elements; write: type {first} (of {names})")
+                let mut names: Vec<String> = labels.names.iter().map(|name| shortened(name)).collect();
+                names.sort_by_key(|name| (name.len(), name.clone()));
+                let first = names[0].clone();
+                format!("the file has no elements; write: type {first} (of {})", listed(names.into_iter(), 8))
             }
             _ => "the file has no elements".to_owned(),
         }
@@ -180,6 +184,11 @@ impl<'a> Data<'a> {
             }
             _ => "the file has no residues".to_owned(),
         }
+    }
+
+    /// Returns true for columns of the file.
+    pub(super) fn is_column(&self, name: &str) -> bool {
+        self.loaded.columns.iter().any(|column| column.name.eq_ignore_ascii_case(name))
     }
 
     /// Returns true for keys and columns of the file.

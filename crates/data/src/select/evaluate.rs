@@ -87,8 +87,15 @@ impl Data<'_> {
         PeriodicCell::of(self.loaded).filter(|_| !self.loaded.is_part_of_crystal)
     }
 
-    fn too_many_images(&self, at: usize) -> SelectError {
-        self.error(at, "the periodic cell is so small that there are too many images within this distance")
+    /// Sorts points, to find what is at most a distance away.
+    fn grid(&self, points: &[DVec3], reach: f64, cell: Option<PeriodicCell>, at: usize) -> Result<Grid, SelectError> {
+        // No nearest image is farther away than half of all edges together, if the cell repeats in all directions.
+        let all_edges = |cell: &PeriodicCell| cell.edges.to_cols_array_2d().map(|edge| DVec3::from(edge).length());
+        let farthest = cell.as_ref().filter(|_| self.loaded.is_periodic == [true; 3]).map(all_edges);
+        let reach = farthest.map_or(reach, |edges| reach.min(0.5001 * edges.iter().sum::<f64>()));
+        Grid::new(points.iter().copied(), reach, cell).ok_or_else(|| {
+            self.error(at, "the periodic cell is so small that there are too many images within this distance")
+        })
     }
 
     fn near(
@@ -107,7 +114,7 @@ impl Data<'_> {
             },
             _ => self.cell(),
         };
-        let grid = Grid::new(chosen.into_iter(), reach, cell).ok_or_else(|| self.too_many_images(at))?;
+        let grid = self.grid(&chosen, reach, cell, at)?;
         let points = self.points();
         let is_match = |index: usize| {
             let point = points[index];
@@ -138,7 +145,7 @@ impl Data<'_> {
         let mut reach = size.max_element() / 64.0;
         loop {
             let is_last = reach > 2.0 * far.length();
-            let grid = Grid::new(chosen.iter().copied(), reach, self.cell()).ok_or_else(|| self.too_many_images(at))?;
+            let grid = self.grid(&chosen, reach, self.cell(), at)?;
             let mut found: Vec<(f64, usize)> =
                 others.clone().filter_map(|index| Some((grid.nearest(points[index])?, index))).collect();
             if found.len() >= wanted || is_last || chosen.is_empty() {

@@ -33,6 +33,8 @@ pub(super) fn is_somewhere(point: DVec3) -> bool {
 impl Grid {
     /// Sorts points, and their images if there is a cell. Returns `None` if there are too many images.
     pub(super) fn new(points: impl Iterator<Item = DVec3>, reach: f64, cell: Option<PeriodicCell>) -> Option<Self> {
+        // Farther than any two points are apart, and its square does not overflow.
+        let reach = reach.min(1e3 * FARTHEST);
         let mut all: Vec<DVec3> = points.filter(|point| is_somewhere(*point)).collect();
         if let Some(cell) = &cell {
             for point in &mut all {

@@ -5,7 +5,7 @@ use super::foreign;
 use super::scan::Scanner;
 use super::tree::{Bonded, Near, Node, Place, Step, Word};
 use super::words::{class_of, is_joint, key_of};
-use pinhole::internals::text::shortened;
+use pinhole::internals::text::{one_line, shortened};
 
 /// The deepest nesting, so that the stack suffices.
 const DEEPEST: usize = 100;
@@ -260,7 +260,7 @@ impl Parser<'_> {
         }
         let starts_foreign = rest.starts_with(['/', ':', '#', '@']) || (rest.starts_with('.') && !name.is_empty());
         match foreign::remedy(rest).filter(|_| starts_foreign) {
-            Some(problem) => Err(self.scanner.error(problem)),
+            Some(problem) => Err(self.scanner.error(one_line(&problem))),
             None => self.list_or_comparison(),
         }
     }

@@ -135,6 +135,12 @@ fn distances_are_those_of_a_search_of_all_pairs() {
     assert_eq!(selected(&crowd, "nearest 2 to index 0").unwrap().0, [1, 2]);
     let far = Dataset::new(SphereArray::F64([0.0, 1e90, -1e90, 1e300].map(|x| [x, 0.0, 0.0, 1.0]).to_vec()));
     assert_eq!(selected(&far, "within 1e-9 of all").unwrap().0, [0, 1, 2]);
+    assert_eq!(selected(&far, "within 1e300 of index 0").unwrap().0, [0, 1, 2]);
+    let mut small = Dataset::new(SphereArray::F64([0.0, 0.3, 0.5].map(|x| [x, 0.0, 0.0, 1.0]).to_vec()));
+    small.cell = Some([[1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [0.0, 0.0, 1.0]]);
+    assert_eq!(selected(&small, "within 1000 of index 0").unwrap().0, [0, 1, 2]);
+    small.is_periodic = [true, true, false];
+    assert!(selected(&small, "within 1e6 of index 0").unwrap_err().to_string().contains("too many images"));
 }
 
 /// Words of the language in any order are read or refused, in one line and without a crash.
@@ -201,6 +207,16 @@ fn nesting_is_limited() {
         deep("x < ", "x", " < x"),
     ] {
         assert!(selected(&data, &text).is_ok(), "{text}");
+    }
+}
+
+/// Columns whose names have signs of arithmetic need no backquotes in comparisons.
+#[test]
+fn columns_of_the_file_come_before_arithmetic() {
+    let csv = "x,y,z,my-column,a*b,c_1[2]\n0,0,0,1,2,3\n1,0,0,4,5,6\n";
+    let data = from_bytes(csv.as_bytes(), "a.csv", &Options::default()).unwrap();
+    for text in ["my-column > 1", "1 < my-column", "a*b == 5", "c_1[2] > 4", "c_1[2] - `my-column` == 2 and x > 0"] {
+        assert_eq!(selected(&data, text).unwrap().0, [1], "{text}");
     }
 }
 
