@@ -317,13 +317,14 @@ impl Crossing {
         // The middle and the point are rounded three times.
         let of_point = U * (point.length() + middle.length() + span.length());
         // The vector to the point has two roundings, the parts of the foot and of the direction across the axis five each,
-        // and their sum two. The axis has four, twice.
+        // and their sum two. The axis, a difference divided by its length, is off by eleven at most, and taken twice.
         let size = self.foot.squared().interval().high.sqrt() + from_foot.interval().size();
-        let error = PAD * (of_point + gamma(10) * size + gamma(8) * from_middle.length() + 16.0 * FLUSH);
+        let error = PAD * (of_point + gamma(10) * size + gamma(22) * from_middle.length() + 16.0 * FLUSH);
         let height = from_middle.dot(axis);
         let slope = (second - first) / span.length();
-        // Each radius is rounded four times, and is at most twice the mean.
-        let radius_error = slope.abs() * error + PAD * gamma(8) * mean + FLUSH;
+        // The slope is off by as much as the axis. Each radius is rounded four times, and is at most twice the mean.
+        let of_slope = gamma(11) * slope.abs() * size;
+        let radius_error = slope.abs() * error + PAD * (of_slope + gamma(8) * mean) + FLUSH;
         (Vector::around(from_middle - height * axis, error), Number::around(mean + slope * height, radius_error))
     }
 }

@@ -167,7 +167,8 @@ fn many_for_paths() -> View {
 /// rougher: what narrow lobes scatter on thin rods has wide bounds, because it follows from where f32 puts a point on them.
 fn many_rods(suite: &str) -> View {
     let view = view(suite, "rods");
-    let (spheres, mut cones) = mixed_shapes(40, 400, 0.4, 9);
+    let (spheres, mut cones) = mixed_shapes(40, 250, 0.4, 9);
+    cones.iter_mut().for_each(|cone| cone.radii = cone.radii.map(|radius| 2.5 * radius));
     cones.extend_from_within(..50);
     let rougher = |surface: &SurfaceProperties| {
         let material = match surface.material {
