@@ -3,6 +3,8 @@
 use std::any::Any;
 use std::sync::{Mutex, PoisonError};
 
+use glam::DVec3;
+
 use crate::geometry::cone::ConeInFrame;
 
 /// Shapes that a scene shares with its copy on a device, and tables of their last picture, which the next one takes.
@@ -20,6 +22,20 @@ pub(crate) struct SharedShapes {
 pub(crate) enum Shape {
     Sphere([f32; 4]),
     Cone(ConeInFrame),
+}
+
+impl Shape {
+    /// The corners of its bounding box.
+    pub(crate) fn corners(self) -> [DVec3; 2] {
+        match self {
+            Self::Sphere(sphere) => {
+                let [x, y, z, radius] = sphere.map(f64::from);
+                let center = DVec3::new(x, y, z);
+                [center - radius.abs(), center + radius.abs()]
+            }
+            Self::Cone(cone) => cone.corners(),
+        }
+    }
 }
 
 impl SharedShapes {

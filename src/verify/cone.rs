@@ -120,7 +120,7 @@ fn within(exact: DVec3, error: f64) -> Vector {
     Vector::around(exact, error).map(|c| if c.interval().size() < FLUSH { c.union(Number::ZERO) } else { c })
 }
 
-/// Where the line of a ray enters a cone and leaves it, for one combination of open decisions.
+/// The crossing of a cone by the line of a ray, for one combination of open decisions.
 pub(super) struct Crossing {
     /// The distance of the foot, by which the origin may be moved.
     foot_distance: Number,
@@ -145,7 +145,7 @@ pub(super) struct Crossing {
     /// True if the discs at which the line enters and leaves are closed.
     is_closed: [bool; 2],
     cone: ConeInFrame,
-    /// What must not be negative, or the line misses the cone. `None` if it cannot miss the side.
+    /// The line misses the cone if this is negative. `None` if it cannot miss the side.
     discriminant: Option<Number>,
 }
 
@@ -256,13 +256,13 @@ impl Crossing {
         [self.foot_distance + self.enters, self.foot_distance + self.leaves]
     }
 
-    /// Whether the line enters and leaves through something, and not through an open end.
+    /// True for the entry, and for the exit, if it is not through an open end.
     pub(super) fn is_solid(&self) -> [bool; 2] {
         let [closed_in, closed_out] = self.is_closed;
         [closed_in || !self.enters_disc, closed_out || !self.leaves_disc]
     }
 
-    /// Whether the line misses the cone.
+    /// True if the line misses the cone.
     fn is_missed(&self, choices: &mut Choices) -> bool {
         if self.discriminant.is_some_and(|it| choices.decide(it.is_less(Number::ZERO))) {
             return true;

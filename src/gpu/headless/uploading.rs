@@ -16,7 +16,7 @@ use crate::gpu::scene::recolor::Recolor;
 use crate::gpu::scene::scene_buffers::SceneBuffers;
 use crate::gpu::scene::scene_buffers::has_several;
 use crate::gpu::scene::scene_summary::{SceneSummary, ShapeIds};
-use crate::gpu::scene::scene_upload::{BrickSource, SceneUpload};
+use crate::gpu::scene::scene_upload::{BrickSource, SceneUpload, bricks_of};
 use crate::gpu::scene::structures::Structures;
 use crate::scene::{Scene, SceneUpdate};
 
@@ -92,7 +92,7 @@ impl Headless {
         self.alone(async |renderers: &mut Renderers| {
             let renderer = self.layouts_of(structures, of_cones).await?;
             let phase = self.phase("divide");
-            let bricks = accel.bricks(scene.spheres()).with_cones(scene.cones()).into();
+            let bricks = bricks_of(accel, scene).into();
             drop(phase);
             let mut begin = |kinds: &[BrickKind], several_bricks: bool| {
                 if let Some(options_of) = options_of {
@@ -103,7 +103,7 @@ impl Headless {
             let Some((plan, opaque)) = occluders.as_ref().zip(scene.opaque()) else {
                 return Ok(all);
             };
-            let bricks = plan.bricks(opaque.spheres()).with_cones(opaque.cones()).into();
+            let bricks = bricks_of(plan, &opaque).into();
             let some = self.upload_bricks(&renderer, scene, true, bricks, watch, &mut |_, _| {}).await?;
             Ok(all.with_occluders(some))
         })

@@ -14,7 +14,7 @@ use crate::gpu::error::GpuError;
 use crate::gpu::passes::renderer::Renderer;
 use crate::gpu::passes::tiles::Groups;
 use crate::gpu::scene::scene_summary::{ExcludeBy, SceneSummary, ShapeIds};
-use crate::gpu::scene::scene_upload::{BrickBuffers, BrickSource, BrickSpace, SceneUpload, UploadedBricks};
+use crate::gpu::scene::scene_upload::{BrickBuffers, BrickSource, BrickSpace, SceneUpload, UploadedBricks, bricks_of};
 use crate::gpu::shader::records::SceneSpace;
 use crate::gpu::shader::textures::{TEXELS_PER_ROW, reads_textures};
 use crate::render::{PrimarySettings, RenderSettings};
@@ -84,7 +84,7 @@ impl SceneBuffers {
     /// As for [`SceneBuffers::with_accel`].
     pub async fn new(renderer: &Renderer, device: &Device, queue: &Queue, scene: &Scene) -> Result<Self, GpuError> {
         let plan = plan_of(device, scene);
-        let bricks = BrickSource::from(plan.bricks(scene.spheres()).with_cones(scene.cones()));
+        let bricks = BrickSource::from(bricks_of(&plan, scene));
         let ids = ShapeIds::of_all(scene, bricks.may_split_duplicates);
         Self::upload(renderer, device, queue, SceneSummary::of(scene), bricks, &ids).await
     }
@@ -122,7 +122,7 @@ impl SceneBuffers {
         let Some(opaque) = scene.opaque() else { return Ok(all) };
         let plan = plan_of(device, &opaque);
         let (summary, ids) = (SceneSummary::of_occluders(scene), ShapeIds::of_opaque(scene));
-        let bricks = BrickSource::from(plan.bricks(opaque.spheres()).with_cones(opaque.cones()));
+        let bricks = BrickSource::from(bricks_of(&plan, &opaque));
         let some = Self::upload(renderer, device, queue, summary, bricks, &ids).await?;
         Ok(all.with_occluders(some))
     }

@@ -8,7 +8,7 @@ use wgpu::{
     TextureView,
 };
 
-use crate::accel::{Accel, Brick, BrickBounds, BrickKind, Bricks, Index, Primitive, Structure};
+use crate::accel::{Accel, AccelPlan, Brick, BrickBounds, BrickKind, Bricks, Index, Primitive, Structure};
 use crate::gpu::checks::scoped;
 use crate::gpu::error::{GpuError, check_storage_size};
 use crate::gpu::passes::renderer::Renderer;
@@ -18,7 +18,7 @@ use crate::gpu::scene::query_structure;
 use crate::gpu::scene::scene_summary::{SceneSummary, ShapeIds};
 use crate::gpu::shader::records;
 use crate::gpu::shader::textures::{Searched, TEXELS_PER_ROW, reads_textures};
-use crate::scene::SceneAppearance;
+use crate::scene::{Scene, SceneAppearance};
 
 /// Buffers and bind groups of a brick.
 #[derive(Debug)]
@@ -87,6 +87,11 @@ impl<'a> From<Bricks<'a>> for BrickSource<Bricks<'a>> {
         let space = BrickSpace { structure: bricks.structure(), bounds: bricks.bounds() };
         Self { space, may_split_duplicates: bricks.may_split_duplicates(), bricks }
     }
+}
+
+/// The planned bricks of a scene's shapes.
+pub(crate) fn bricks_of<'a>(plan: &'a AccelPlan, scene: &'a Scene) -> Bricks<'a> {
+    plan.bricks(scene.spheres()).with_cones(scene.cones())
 }
 
 /// The bricks of a scene on a device.

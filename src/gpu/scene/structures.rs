@@ -3,6 +3,7 @@
 use crate::accel::{Accel, AccelChoice, Structure};
 use crate::gpu::error::GpuError;
 use crate::gpu::headless::plan::RenderPlan;
+use crate::gpu::scene::scene_upload::bricks_of;
 use crate::scene::Scene;
 
 /// The acceleration structures of a scene, built on the host. [`RenderPlan::build`] returns them. They can also be made
@@ -27,10 +28,9 @@ impl RenderPlan {
     /// Builds the planned structures of the scene that the plan was made for.
     #[must_use]
     pub fn build(&self, scene: &Scene) -> Structures {
-        let accel = self.accel.bricks(scene.spheres()).with_cones(scene.cones()).build();
+        let accel = bricks_of(&self.accel, scene).build();
         let occluders = self.occluders.as_ref().zip(self.occluders.as_ref().and(scene.opaque()));
-        let occluders =
-            occluders.map(|(plan, opaque)| plan.bricks(opaque.spheres()).with_cones(opaque.cones()).build());
+        let occluders = occluders.map(|(plan, opaque)| bricks_of(plan, &opaque).build());
         Structures { accel, occluders }
     }
 

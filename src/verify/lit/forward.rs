@@ -1,7 +1,7 @@
 //! All light that a conforming device may find for a pixel, from the camera to the mean of its samples. The kernels are
 //! those of the check of recordings, but their results are intervals instead of recorded numbers.
 
-use glam::{DVec2, DVec3, Vec3};
+use glam::{DVec2, DVec3};
 
 use crate::camera::View;
 use crate::camera::sampling::{pair, pixel_seed, unit};
@@ -13,7 +13,7 @@ use crate::recording::lighting::{HostLighting, emitter_records, max_surfaces, up
 use crate::recording::lit::{LitInputs, PathState, flag, slot};
 use crate::recording::{NO_HIT, RequestedCamera};
 use crate::render::RenderSettings;
-use crate::scene::{Scene, Shape};
+use crate::scene::Scene;
 use crate::verify::Checker;
 use crate::verify::choices::Choices;
 use crate::verify::hit::{LegalHits, shape_of};
@@ -59,13 +59,7 @@ pub(crate) fn inputs(checker: &Checker<'_>, view: &View<'_>, settings: &RenderSe
 /// The box of the opaque shapes, if there are some and not all are opaque.
 fn box_of_occluders(scene: &Scene) -> Option<[[f32; 3]; 2]> {
     let ids = scene.opaque_ids().filter(|_| !scene.is_opaque());
-    let of_shape = |id: u32| match scene.shared_shapes().shape(id) {
-        Shape::Sphere([x, y, z, radius]) => {
-            let (center, radius) = (Vec3::new(x, y, z), Vec3::splat(radius.abs()));
-            [center - radius, center + radius]
-        }
-        Shape::Cone(cone) => cone.corners().map(|corner| corner.as_vec3()),
-    };
+    let of_shape = |id: u32| scene.shared_shapes().shape(id).corners().map(|corner| corner.as_vec3());
     let [min, max] = ids.map(of_shape).reduce(|[a, b], [c, d]| [a.min(c), b.max(d)])?;
     Some(expected_box(min, max).map(|corner| corner.to_array()))
 }

@@ -201,7 +201,7 @@ pub(crate) struct Vertex {
     pub(crate) position: Vector,
     /// Unit normal on the visible side.
     pub(crate) normal: Vector,
-    /// Whether the visible side is the inside of a shape.
+    /// True if the visible side is the inside of a shape.
     pub(crate) is_back: bool,
     /// Distance along the ray.
     pub(crate) distance: Number,
@@ -234,7 +234,7 @@ impl Vertex {
     }
 }
 
-/// Where a ray hits a shape.
+/// The place where a ray hits a shape.
 pub(super) struct Place {
     pub(super) position: Vector,
     /// Unit normal, which points out of the shape.

@@ -13,8 +13,8 @@ use crate::light::{LightKind, SkyLight, codes};
 use crate::recording::lit::{LitInputs, UploadedLighting, flag};
 use crate::recording::{NO_HIT, UploadError};
 use crate::render::{DepthCue, Integrator, LightSampling, Occlusion, PathTracing, Studio};
+use crate::scene::Scene;
 use crate::scene::material::{Material, SurfaceProperties};
-use crate::scene::{Scene, Shape};
 use crate::verify::hit::Candidates;
 use crate::verify::lit::sampling::ENERGIES;
 use crate::verify::rounding::{FLUSH, U, are_near, is_near};
@@ -129,15 +129,8 @@ fn check_studio(studio: &Studio, scene: &Scene, inputs: &LitInputs) -> Result<()
 fn check_occluders(scene: &Scene, inputs: &LitInputs) -> Result<(), UploadError> {
     let [low, high] = inputs.occluders.map(wide);
     let margin = LEAST_MARGIN * (high - low).length();
-    let corners = |id: u32| match scene.shared_shapes().shape(id) {
-        Shape::Sphere([x, y, z, radius]) => {
-            let (center, radius) = (wide([x, y, z]), f64::from(radius.abs()));
-            [center - radius, center + radius]
-        }
-        Shape::Cone(cone) => cone.corners(),
-    };
     let holds = |[first, last]: [DVec3; 2]| (low + margin).cmple(first).all() && (high - margin).cmpge(last).all();
-    let are_held = scene.opaque_ids().all(|id| holds(corners(id)));
+    let are_held = scene.opaque_ids().all(|id| holds(scene.shared_shapes().shape(id).corners()));
     first_wrong(&[("the box of the shapes that cast shadows", are_held)])
 }
 

@@ -136,9 +136,9 @@ pub(super) fn one_pass_fits(structure: Structure, limits: &wgpu::Limits) -> bool
 pub(crate) struct LitKey {
     pub(crate) camera: CameraKind,
     pub(crate) mode: Mode,
-    pub(crate) structures: Structures,
+    pub(crate) structures: ShapeStructures,
     /// The structures of the shapes that cast shadows.
-    pub(crate) occluders: Structures,
+    pub(crate) occluders: ShapeStructures,
     /// How rays exclude the shape on which they start, among all shapes and among the shapes that cast shadows.
     pub(crate) exclude_by: [ExcludeBy; 2],
     /// Whether the scene has several bricks.
@@ -149,12 +149,12 @@ pub(crate) struct LitKey {
 
 /// The structures of a scene's bricks, for each primitive. `None` without such bricks.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
-pub(crate) struct Structures {
+pub(crate) struct ShapeStructures {
     pub(crate) spheres: Option<Structure>,
     pub(crate) cones: Option<Structure>,
 }
 
-impl Structures {
+impl ShapeStructures {
     /// The structures of these bricks.
     pub(crate) fn of(kinds: &[BrickKind]) -> Self {
         let of = |primitive| kinds.iter().find(|kind| kind.primitive == primitive).map(|kind| kind.structure);
@@ -183,11 +183,12 @@ pub(super) struct PassName {
 impl LitKey {
     /// The keys of all pictures of scenes of spheres with these structures, and those of spheres and cones.
     pub(super) fn all(structures: &[Structure]) -> impl Iterator<Item = Self> {
-        let spheres = structures.iter().map(|&structure| Structures { spheres: Some(structure), cones: None });
+        let spheres = structures.iter().map(|&structure| ShapeStructures { spheres: Some(structure), cones: None });
         let kinds: Vec<BrickKind> = BrickKind::of(structures, &[Primitive::Cone]).collect();
-        let both =
-            kinds.into_iter().map(|kind| Structures { spheres: Some(kind.structure), cones: Some(kind.structure) });
-        let structures: Vec<Structures> = spheres.chain(both).collect();
+        let both = kinds
+            .into_iter()
+            .map(|kind| ShapeStructures { spheres: Some(kind.structure), cones: Some(kind.structure) });
+        let structures: Vec<ShapeStructures> = spheres.chain(both).collect();
         let one_pass = OnePass::ALL.into_iter().map(|pass| (pass.mode(), Some(pass)));
         let modes = Mode::all().map(|mode| (mode, None)).chain(one_pass);
         modes.flat_map(move |(mode, one_pass)| {
@@ -247,7 +248,7 @@ impl LitKey {
         passes
     }
 
-    /// Whether a pass searches the shapes that cast shadows.
+    /// True if a pass searches the shapes that cast shadows.
     pub(super) fn finds_occluders(entry_point: &str) -> bool {
         matches!(entry_point, "occlude" | "shadow" | "ambient")
     }

@@ -33,7 +33,7 @@ use crate::gpu::shader::records::FrameParameters;
 use crate::render::RenderSettings;
 pub(crate) use frame::LightingBuffers;
 pub(crate) use frame::{Frames, LitFrame, MAX_DISPATCHES, RecordedBy};
-use kernels::Structures;
+use kernels::ShapeStructures;
 pub(crate) use kernels::{LitKey, Mode};
 pub(crate) use lighting::LightingData;
 pub(crate) use live::{LiveKey, LivePasses, LiveView};
@@ -73,8 +73,8 @@ impl<'a> LitScene<'a> {
         LitKey {
             camera: view.camera.kind(),
             mode: lighting.mode,
-            structures: Structures::of(&all.kinds()),
-            occluders: Structures::of(&occluders.kinds()),
+            structures: ShapeStructures::of(&all.kinds()),
+            occluders: ShapeStructures::of(&occluders.kinds()),
             exclude_by: [all, occluders].map(|scene| scene.exclude_by),
             several_bricks: all.bricks.len() > 1,
             one_pass: lighting

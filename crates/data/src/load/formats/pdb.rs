@@ -113,7 +113,7 @@ struct Reader {
     /// Line of the first atom after this record.
     after_end: Option<usize>,
     cell: Option<[[f64; 3]; 3]>,
-    /// Whether the space group of the cell is another than P 1.
+    /// True if the space group of the cell is another than P 1.
     has_symmetry: bool,
     atoms: Atoms,
 }
