@@ -22,6 +22,7 @@ from ._sheet import sheet
 from ._spheres import Spheres
 from ._tables import (
     Arrows,
+    Axes,
     Bonds,
     Box,
     ColorBy,
@@ -48,6 +49,7 @@ from ._tables import (
 
 __all__ = [
     "Arrows",
+    "Axes",
     "Bonds",
     "Box",
     "Camera",

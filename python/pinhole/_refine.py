@@ -105,7 +105,7 @@ class Refiner:
         eye = (low + high) / 2 + 10 * float(np.linalg.norm(high - low)) * up
         side = [1.0, 0.0, 0.0] if abs(up[0]) < 0.7 else [0.0, 1.0, 0.0]
         away = Camera(eye=eye.tolist(), direction=up.tolist(), up=side)
-        settings = {key: of for key, of in self.settings.items() if key not in ("legend", "scale_bar", "labels", "text")}
+        settings = {key: of for key, of in self.settings.items() if key not in ("legend", "scale_bar", "axes", "labels", "text")}
         image = self._render({**settings, "camera": away, "size": (4, 4)}, layers=["samples"])
         return int(image.samples.max()), [float(part) for part in image.color[0, 0]]
 

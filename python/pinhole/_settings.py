@@ -127,6 +127,8 @@ def data_settings(settings: Mapping[str, Any]) -> dict[str, Any]:
     select = settings.get("select")
     if select is not None and not isinstance(select, str):
         raise InputError('select is not a text; write one such as "x > 0", or leave out rows before: positions[mask]')
+    if "show" in settings:
+        settings["show"] = show_tables(settings["show"])
     material = settings.get("material")
     if isinstance(material, (list, tuple)):
         raise InputError("material: values for each sphere are an argument of Spheres(...); give one Material")
@@ -135,6 +137,23 @@ def data_settings(settings: Mapping[str, Any]) -> dict[str, Any]:
         settings["materials"] = {**settings.get("materials", {}), "given": dict(material)}
         settings["material"] = "given"
     return settings
+
+
+def show_tables(given: Any) -> list[Mapping[str, Any]]:
+    """Returns rules for what is drawn as tables. A rule may be a style, or a selection, a style and perhaps a dict."""
+    is_one = isinstance(given, (str, Mapping)) or (isinstance(given, tuple) and given and isinstance(given[0], str))
+    rules: list[Mapping[str, Any]] = []
+    for rule in [given] if is_one else given:
+        if isinstance(rule, Mapping):
+            rules.append(rule)
+        elif isinstance(rule, str):
+            rules.append({"as": rule})
+        elif isinstance(rule, (list, tuple)) and len(rule) in (2, 3):
+            selection, style, *more = rule
+            rules.append({"select": selection, "as": style, **(more[0] if more else {})})
+        else:
+            raise InputError(f"show: {rule!r} is no rule; write one such as (\"resname HEM\", \"sticks\")")
+    return rules
 
 
 def material_tables(given: list[Any], known: Any) -> tuple[dict[str, Any], list[str]]:
@@ -166,7 +185,7 @@ def picture_settings(settings: Mapping[str, Any]) -> dict[str, Any]:
     """Returns checked settings about a picture, with short forms in their tables."""
     refuse_unknown(settings, (*PICTURE_KEYS, *SHORT, "size", "light"), DATA_KEYS, "Spheres(...), read(...) or with_(...)")
     tables: dict[str, Any] = {key: item for key, item in settings.items() if key in PICTURE_KEYS and item is not None}
-    for name in ("legend", "scale_bar"):
+    for name in ("legend", "scale_bar", "axes"):
         if isinstance(tables.get(name), bool) and tables.pop(name):
             tables[name] = {}
     for name in ("labels", "lights"):

@@ -119,6 +119,20 @@ class Spheres(Shapes):
         made._data, made._settings, made.camera = data, settings, camera
         return made
 
+    def show(self, *rule: str, **keys: Any) -> Spheres:
+        """Returns these spheres with one more rule for what is drawn.
+
+        ``spheres.show("resname HEM", "sticks", carbon="orange")`` draws a selection in a style, and
+        ``spheres.show("balls")`` all. The last rule for a sphere counts. Styles are spacefill, balls, sticks, lines,
+        points, trace, ghost and hidden; keys are radius, scale, stick, color, carbon, opacity and material.
+        """
+        if len(rule) not in (1, 2):
+            raise InputError(
+                'show(selection, style) says what is drawn, such as show("resname HEM", "sticks"); render(...) makes a picture'
+            )
+        made = {"select": rule[0] if len(rule) == 2 else None, "as": rule[-1], **keys}
+        return self.with_(show=[*self._settings.get("show", []), made])
+
     def with_(self, *, cmap: str | None = None, color_range: tuple[Any, Any] | None = None, **settings: Any) -> Spheres:
         """The same data with other settings, for spheres with columns. Arguments are the settings of ``Spheres``."""
         if cmap is not None or color_range is not None:

@@ -114,6 +114,10 @@ class Legend(Table, of="legend"):
     """A legend for colours of numbers or categories."""
 
 
+class Axes(Table, of="axes"):
+    """The directions of x, y and z."""
+
+
 class ScaleBar(Table, of="scale_bar"):
     """A line of a known length."""
 

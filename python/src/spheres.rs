@@ -39,7 +39,7 @@ pub(crate) struct SphereData {
     pub(crate) loaded: Option<Arc<Dataset>>,
     /// Whether the caller gave radii.
     has_radii: bool,
-    /// Whether there are bonds or arrows, which do not follow spheres that move.
+    /// Whether there are bonds, arrows or rules for what is drawn, which do not follow spheres that move.
     has_sticks: bool,
     z_is_up: bool,
     /// Notes for the user.
@@ -75,7 +75,8 @@ impl SphereData {
                 (scene, color_key, arrow_key, notes, bonds)
             }
         };
-        let has_sticks = bonds.is_some_and(|bonds| bonds > 0) || arrow_key.is_some();
+        let has_rules = text.parse()?.data().is_some_and(|data| !data.shows.is_empty());
+        let has_sticks = bonds.is_some_and(|bonds| bonds > 0) || arrow_key.is_some() || has_rules;
         Ok(Self { key, arrow_key, loaded: kept, has_radii, has_sticks, z_is_up, notes, ..Self::of_scene(scene) })
     }
 
@@ -282,7 +283,7 @@ impl SphereData {
     /// about an axis.
     fn placed(&self, text: SceneText, axis: Option<[f64; 3]>) -> PyResult<String> {
         let scene = self.scene();
-        let framed = axis.map(|axis| swept(&scene, axis.into(), scene.bounds_to_frame().center()));
+        let framed = axis.map(|axis| swept(&scene, axis.into(), scene.subject().bounds().center()));
         let framed = framed.transpose().map_err(|error| Fault::Input(error.to_string()))?;
         Ok(look::placed(&text, framed.as_ref().unwrap_or(&scene))?)
     }
@@ -365,7 +366,7 @@ impl SphereData {
             let colors = colors.as_deref().map(NewColors::Rgba8);
             if this.has_sticks && (centers.is_some() || radii.is_some()) {
                 return Err(Fault::Input(
-                    "these spheres have bonds or arrows, which would not follow them; make new Spheres(...) instead"
+                    "these spheres have bonds, arrows or rules of show, which would not follow them; make new Spheres(...) instead"
                         .to_owned(),
                 ));
             }

@@ -300,7 +300,7 @@ def test_updates_give_the_picture_of_new_spheres():
     with pytest.raises(ph.InputError, match="sphere 7: its center"):
         spheres.update(positions=np.full((1, 3), np.nan), first=7)
     bonded = ph.Spheres([[0, 0, 0], [4, 0, 0]], 0.5, bonds={"length": 5.0})
-    with pytest.raises(ph.InputError, match="these spheres have bonds or arrows, which would not follow them"):
+    with pytest.raises(ph.InputError, match="these spheres have bonds, arrows or rules of show, which would not follow them"):
         bonded.update(positions=[[0, 0, 1]])
     assert bonded.positions.shape == (2, 3) and bonded.radii.shape == (2,)
 

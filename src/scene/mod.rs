@@ -23,6 +23,7 @@ mod color_map;
 pub mod cone;
 mod duplicates;
 mod error;
+mod focus;
 mod frame;
 pub mod material;
 mod shared;
@@ -60,6 +61,8 @@ pub struct Scene {
     added: usize,
     /// The scene that this is a part of, if other spheres are not in memory.
     whole: Option<SceneExtent>,
+    /// The spheres that a camera frames in the place of all shapes, and their box.
+    focus: Option<Arc<(Vec<[f32; 4]>, Bounds)>>,
 }
 
 impl Scene {
@@ -187,7 +190,7 @@ impl Scene {
     ) -> Self {
         let shapes = Arc::new(SharedShapes::new(spheres, cones));
         let appearance = Arc::new(SceneAppearance::new(appearance, shapes.len()));
-        Self { origin, shapes, appearance, bounds, added: 0, whole: None }
+        Self { origin, shapes, appearance, bounds, added: 0, whole: None, focus: None }
     }
 
     /// The shapes, all with these surface properties.
@@ -330,9 +333,13 @@ impl Scene {
         self.bounds.unwrap_or(Bounds::of_sphere(self.origin, 0.5))
     }
 
-    /// The subject that a camera should frame: all shapes, or a unit cube if there are none.
+    /// The subject that a camera should frame: all shapes or those of [`Scene::with_focus`], or a unit cube if there are
+    /// none.
     #[must_use]
     pub fn subject(&self) -> Subject<'_> {
+        if let Some((spheres, bounds)) = self.focus.as_deref() {
+            return Subject::spheres(self.origin, spheres, *bounds);
+        }
         let subject = Subject::spheres(self.origin, self.spheres(), self.bounds_to_frame()).with_cones(self.cones());
         match &self.whole {
             Some(whole) => subject.with_whole(WholeSubject {

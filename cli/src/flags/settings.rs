@@ -87,13 +87,18 @@ impl<const GROUPS: u32> Args for SettingArgs<GROUPS> {
 
 impl<const GROUPS: u32> FromArgMatches for SettingArgs<GROUPS> {
     fn from_arg_matches(matches: &ArgMatches) -> Result<Self, clap::Error> {
-        let mut given = Given::default();
+        let (mut given, mut rules) = (Given::default(), Vec::new());
         for flag in flags(GROUPS) {
             if matches.value_source(flag.name()) == Some(ValueSource::CommandLine) {
                 let values = matches.get_many::<String>(flag.name()).into_iter().flatten();
-                given.0.extend(values.map(|value| (flag, value.clone())));
+                let places = matches.indices_of(flag.name()).into_iter().flatten();
+                let values = values.zip(places).map(|(value, place)| (place, (flag, value.clone())));
+                // Rules that several flags give apply in the order in which they were written.
+                if flag.key == "show" { rules.extend(values) } else { given.0.extend(values.map(|(_, value)| value)) }
             }
         }
+        rules.sort_by_key(|(place, _)| *place);
+        given.0.extend(rules.into_iter().map(|(_, rule)| rule));
         Ok(Self { given })
     }
 
@@ -131,9 +136,9 @@ fn argument(flag: &'static Flag) -> Arg {
     };
     let arg = match flag.alone {
         Some(value) => arg.num_args(0..=1).require_equals(true).default_missing_value(value),
-        None => {
-            arg.allow_hyphen_values(!matches!(flag.value, Value::Text | Value::OneOf(_)) || flag.name() == "select")
-        }
+        None => arg.allow_hyphen_values(
+            !matches!(flag.value, Value::Text | Value::OneOf(_)) || ["select", "focus"].contains(&flag.name()),
+        ),
     };
     let exclusive = EXCLUSIVE.iter().filter(|(name, _)| *name == flag.flag);
     let excluded = exclusive.flat_map(|(_, others)| others.iter());

@@ -121,7 +121,7 @@ pub(super) fn turntable(source: &Source, count: usize, first: usize) -> Result<S
             up_of(&look.parameters).unwrap_or(DVec3::Y)
         }
     };
-    let axis = Axis { direction, center: contents.scene.bounds_to_frame().center() };
+    let axis = Axis { direction, center: contents.scene.subject().bounds().center() };
     let framed = swept(&contents.scene, axis.direction, axis.center);
     let framed = framed.with_context(|| source.name())?;
     let stage = Stage { framed, key, file, sky };

@@ -180,7 +180,11 @@ impl Source {
         } = details;
         let report = Report {
             path: self.path.display().to_string(),
-            spheres: self.bricks.as_ref().map_or(scene.len() - scene.added(), |bricks| bricks.whole().count as usize),
+            spheres: match (&self.bricks, &kept) {
+                (Some(bricks), _) => bricks.whole().count as usize,
+                (None, Some(kept)) => kept.kept,
+                (None, None) => scene.len() - scene.added(),
+            },
             cones: file.shapes().cone_count(),
             selected_from: kept.map(|kept| kept.of),
             bonds,

@@ -16,4 +16,5 @@ pub mod column;
 pub mod css;
 pub mod load;
 pub mod select;
+pub mod show;
 pub mod write;

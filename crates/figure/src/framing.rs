@@ -29,6 +29,9 @@ pub struct Union {
 impl Union {
     /// Adds the spheres of a scene, and those around the ends of its cones.
     pub fn add(&mut self, scene: &Scene) {
+        if let Some(focus) = scene.focus() {
+            return gather(&mut self.spheres, scene.origin(), focus.iter().copied());
+        }
         let (of_data, added) = scene.spheres().split_at(scene.len() - scene.added());
         gather(&mut self.spheres, scene.origin(), of_data.iter().copied());
         gather(&mut self.added, scene.origin(), added.iter().copied().chain(ends(scene)));
@@ -71,9 +74,14 @@ fn ends(scene: &Scene) -> impl Iterator<Item = [f32; 4]> {
     })
 }
 
-/// All spheres of a scene and those around the ends of its cones, in world space.
-fn all_of(scene: &Scene) -> Vec<[f64; 4]> {
-    scene.spheres().iter().copied().chain(ends(scene)).map(|sphere| in_world(scene.origin(), sphere)).collect()
+/// All spheres of a scene and those around the ends of its cones, or else those of its focus, in world space. Those of the
+/// data come first, whose number is returned as well.
+fn all_of(scene: &Scene) -> (Vec<[f64; 4]>, usize) {
+    if let Some(focus) = scene.focus() {
+        return (focus.iter().map(|sphere| in_world(scene.origin(), *sphere)).collect(), focus.len());
+    }
+    let all = scene.spheres().iter().copied().chain(ends(scene)).map(|sphere| in_world(scene.origin(), sphere));
+    (all.collect(), scene.len() - scene.added())
 }
 
 /// Makes a scene of spheres, the last `added` of which were added to the data.
@@ -116,7 +124,7 @@ pub fn swept(scene: &Scene, axis: DVec3, center: DVec3) -> Result<Scene, SceneEr
     const PROFILE: usize = 64;
     /// Number of steps of a full turn.
     const STEPS: usize = 72;
-    let spheres = all_of(scene);
+    let (spheres, of_data) = all_of(scene);
     let farthest = |index: usize| {
         let (sine, cosine) = (PI * (index as f64 / (PROFILE - 1) as f64 - 0.5)).sin_cos();
         let reach = |&[x, y, z, radius]: &[f64; 4]| {
@@ -135,7 +143,7 @@ pub fn swept(scene: &Scene, axis: DVec3, center: DVec3) -> Result<Scene, SceneEr
             [at.x, at.y, at.z, radius]
         })
     });
-    body(&spheres[..scene.len() - scene.added()], on_surface)
+    body(&spheres[..of_data], on_surface)
 }
 
 /// A scene of spheres on a surface, with some of the data's own for the mean radius.
@@ -152,8 +160,8 @@ fn body(of_data: &[[f64; 4]], on_surface: impl Iterator<Item = [f64; 4]>) -> Res
 /// # Errors
 /// Returns an error if the ball is too large for a scene.
 pub fn around(scene: &Scene) -> Result<Scene, SceneError> {
-    let center = scene.bounds_to_frame().center();
-    let spheres = all_of(scene);
+    let center = scene.subject().bounds().center();
+    let (spheres, of_data) = all_of(scene);
     let reach = |&[x, y, z, radius]: &[f64; 4]| DVec3::new(x, y, z).distance(center) + radius;
     let Some(farthest) = spheres.iter().max_by(|a, b| reach(a).total_cmp(&reach(b))) else {
         return Scene::from_f64(&[], LinearRgb::WHITE);
@@ -164,7 +172,7 @@ pub fn around(scene: &Scene) -> Result<Scene, SceneError> {
         let at = center + beside * of_spiral(index, 4 * DIRECTIONS);
         [at.x, at.y, at.z, radius]
     });
-    body(&spheres[..scene.len() - scene.added()], on_surface)
+    body(&spheres[..of_data], on_surface)
 }
 
 /// One of the directions of a spiral, which are about equally spaced.

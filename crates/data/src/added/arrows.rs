@@ -55,7 +55,12 @@ impl Arrows {
         Self { vector: vector.into(), scale: None, radius: None, color, min: 0.0, is_centered: false }
     }
 
-    pub(super) fn add(&self, data: &Dataset, added: &mut AddedShapes) -> Result<(), AddError> {
+    pub(super) fn add(
+        &self,
+        data: &Dataset,
+        is_drawn: impl Fn(usize) -> bool,
+        added: &mut AddedShapes,
+    ) -> Result<(), AddError> {
         let no_vector = |error| AddError(format!("`arrows`: {error}"));
         let (name, [x, y, z]) = vector(&self.vector, &data.spheres, &data.columns).map_err(no_vector)?;
         let name = one_line(name);
@@ -88,7 +93,9 @@ impl Arrows {
         };
         let radius = self.radius.unwrap_or(RADIUS * distance);
         let is_shown = |length: f64| length >= self.min && scale * length >= LEAST * radius;
-        for (index, vector, length) in known.into_iter().filter(|(.., length)| is_shown(*length)) {
+        for (index, vector, length) in
+            known.into_iter().filter(|(index, _, length)| is_shown(*length) && is_drawn(*index))
+        {
             let [x, y, z, _] = data.spheres.at(index);
             let (center, direction, length) = (DVec3::new(x, y, z), vector / length, scale * length);
             let before = if self.is_centered { 0.5 * length } else { 0.0 };
@@ -112,9 +119,9 @@ impl AddedShapes {
         let size = (length / (HEAD[1] * radius)).min(1.0) * radius;
         let neck = end - HEAD[1] * size * ((end - start) / length);
         if length > HEAD[1] * radius {
-            self.push(between([start, neck], radius).with_caps(Caps::First), Look::Color(color))?;
+            self.push(between([start, neck], radius).with_caps(Caps::First), Look::of_color(color))?;
         }
         let head = Cone::new(neck.to_array(), end.to_array(), [HEAD[0] * size, 0.0]);
-        self.push(head.with_caps(Caps::First), Look::Color(color))
+        self.push(head.with_caps(Caps::First), Look::of_color(color))
     }
 }

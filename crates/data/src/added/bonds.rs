@@ -46,6 +46,19 @@ impl Default for Bonds {
     }
 }
 
+/// The radius of the stick at one end of a bond.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum StickSize {
+    /// There is no stick.
+    None,
+    /// A part of the smaller ball of a bond.
+    OfBalls,
+    /// That of the ball.
+    Ball,
+    /// This radius.
+    Radius(f64),
+}
+
 /// The factor by which bonded atoms are smaller than their van der Waals radius.
 const BALL: f64 = 0.25;
 
@@ -56,9 +69,9 @@ const OTHER_BALL: f64 = 0.5;
 /// The radius of a stick, in radii of the smaller of the spheres that it joins.
 const STICK: f64 = 0.45;
 
-/// The factor by which bonds make a sphere of a species smaller.
-pub(super) fn radius_factor(species: Option<&str>) -> f64 {
-    if species.and_then(covalent).is_some() { BALL } else { OTHER_BALL }
+/// The factor by which bonds make a sphere smaller that is an atom of an element, or is not.
+pub(crate) fn radius_factor(is_element: bool) -> f64 {
+    if is_element { BALL } else { OTHER_BALL }
 }
 
 fn center(spheres: &SphereArray, index: usize) -> (DVec3, f64) {
@@ -67,7 +80,14 @@ fn center(spheres: &SphereArray, index: usize) -> (DVec3, f64) {
 }
 
 impl Bonds {
-    pub(super) fn add(&self, data: &Dataset, appearance: &Appearance, added: &mut AddedShapes) -> Result<(), AddError> {
+    /// Adds sticks. `sticks` has their sizes at each sphere.
+    pub(super) fn add(
+        &self,
+        data: &Dataset,
+        appearance: &Appearance,
+        sticks: Option<&[StickSize]>,
+        added: &mut AddedShapes,
+    ) -> Result<(), AddError> {
         let count = data.spheres.len();
         let points: Vec<DVec3> = (0..count).map(|index| center(&data.spheres, index).0).collect();
         let Neighbours { within, across } = match self.length {
@@ -80,14 +100,23 @@ impl Bonds {
                 covalent_bonds(factor, data, &points, &mut added.notes)?
             }
         };
-        added.bonds = within.len() + across.len() / 2;
+        let size = |index: u32| sticks.map_or(StickSize::OfBalls, |sticks| sticks[index as usize]);
         let surface = |id: u32| appearance.surface_indices().and_then(|all| all.get(id as usize).copied());
         let within = within.into_iter().map(|[a, b]| (a, b, None));
         let across = across.into_iter().map(|(a, b, image)| (a, b, Some(image)));
-        for (a, b, image) in within.chain(across) {
+        let are_sticks = |(a, b, _): &(u32, u32, Option<DVec3>)| ![*a, *b].map(size).contains(&StickSize::None);
+        let mut halves = 0;
+        for (a, b, image) in within.chain(across).filter(are_sticks) {
+            // A bond across the border of the cell is there from both sides.
+            halves += if image.is_none() { 2 } else { 1 };
             let ((from, ball_a), (to, ball_b)) = (center(&data.spheres, a as usize), center(&data.spheres, b as usize));
             let to = image.unwrap_or(to);
-            let radius = STICK * ball_a.min(ball_b);
+            let radius_of = |index, ball| match size(index) {
+                StickSize::None | StickSize::OfBalls => STICK * ball_a.min(ball_b),
+                StickSize::Ball => ball,
+                StickSize::Radius(radius) => radius,
+            };
+            let radius = radius_of(a, ball_a).min(radius_of(b, ball_b));
             let (length, middle) = ((to - from).length(), 0.5 * (from + to));
             let along = (to - from) / length;
             // The stick leaves a ball at this distance from its centre.
@@ -113,6 +142,7 @@ impl Bonds {
                 })?;
             }
         }
+        added.bonds = halves / 2;
         let shines = appearance.surfaces().iter().any(|surface| matches!(surface.material, Material::Emissive { .. }));
         if shines && added.bonds > 0 {
             added.notes.push("bonds of spheres that emit light are drawn without light".to_owned());

@@ -10,13 +10,14 @@ mod neighbours;
 mod shapes;
 
 pub use arrows::Arrows;
-pub(crate) use bonds::bonded_pairs;
+pub use bonds::StickSize;
 pub use bonds::{BondLength, Bonds};
+pub(crate) use bonds::{bonded_pairs, radius_factor};
 pub use shapes::{AddError, AddedShapes, ArrowKey};
 
 use glam::DVec3;
 
-use crate::load::{ColumnValues, Dataset};
+use crate::load::{Column, ColumnValues, Dataset, covalent};
 use pinhole::scene::Appearance;
 use shapes::{Look, between};
 
@@ -41,44 +42,69 @@ impl Additions {
         self.cell.is_none() && self.bonds.is_none() && self.arrows.is_none()
     }
 
-    /// Makes spheres of data smaller, if bonds or arrows need it and the user did not choose the radii.
-    pub fn shrink(&self, loaded: &mut Dataset) {
+    /// Makes the chosen spheres of data smaller, if bonds or arrows need it and the user did not choose the radii.
+    pub fn shrink(&self, loaded: &mut Dataset, is_chosen: impl Fn(usize) -> bool) {
         if (self.bonds.is_none() && self.arrows.is_none()) || self.keeps_radii {
             return;
         }
-        let labels = loaded.columns.iter().find_map(|column| match &column.values {
-            ColumnValues::Labels(labels) if column.name == "species" => Some(labels),
-            _ => None,
+        let is_element = element_test(&loaded.columns);
+        loaded.spheres.map_radii(|index, radius| match is_chosen(index) {
+            true => radius * radius_factor(is_element(index)),
+            false => radius,
         });
-        let factor_of = |name: &String| bonds::radius_factor(Some(name));
-        let factors: Vec<f64> = labels.map(|labels| labels.names.iter().map(factor_of).collect()).unwrap_or_default();
-        let indices = labels.map_or(&[][..], |labels| &labels.indices);
-        let other = bonds::radius_factor(None);
-        let factor = |row: usize| {
-            let species = indices.get(row).and_then(|index| factors.get(*index as usize));
-            species.copied().unwrap_or(other)
-        };
-        loaded.spheres.map_radii(|row, radius| radius * factor(row));
     }
 
-    /// Returns the shapes to add to spheres of data with this appearance.
+    /// Returns the shapes to add to spheres of data with this appearance. `drawn` says which of them are drawn, if not all.
     ///
     /// # Errors
     /// Returns an error if there is no cell to draw, if no bonds can be found, if there is no such vector, or if a length
     /// is out of range.
-    pub fn add(&self, data: &Dataset, appearance: &Appearance) -> Result<AddedShapes, AddError> {
+    pub fn add(
+        &self,
+        data: &Dataset,
+        appearance: &Appearance,
+        drawn: Option<&DrawnSpheres>,
+    ) -> Result<AddedShapes, AddError> {
         let mut added = AddedShapes::default();
+        let sticks = drawn.map(|drawn| &*drawn.sticks);
+        let need_bonds = drawn.is_some_and(|drawn| drawn.need_bonds);
         if let Some(bonds) = &self.bonds {
-            bonds.add(data, appearance, &mut added)?;
+            bonds.add(data, appearance, sticks, &mut added)?;
+        } else if need_bonds && let Err(error) = Bonds::default().add(data, appearance, sticks, &mut added) {
+            // Nobody asked for bonds in so many words.
+            added.notes.push(format!("no sticks are drawn: {error}"));
         }
         if let Some(edges) = &self.cell {
             edges.add(data, &mut added)?;
         }
         if let Some(arrows) = &self.arrows {
-            arrows.add(data, &mut added)?;
+            arrows.add(data, |index| drawn.is_none_or(|drawn| drawn.are_drawn[index]), &mut added)?;
         }
         Ok(added)
     }
+}
+
+/// Which spheres are drawn, and the sticks between them.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct DrawnSpheres {
+    /// The size of the stick at each sphere.
+    pub sticks: Vec<StickSize>,
+    /// Whether each sphere is drawn, and so its arrow.
+    pub are_drawn: Vec<bool>,
+    /// Whether there are sticks although nobody asked for bonds.
+    pub need_bonds: bool,
+}
+
+/// Tells which spheres are atoms of a chemical element.
+pub(crate) fn element_test(columns: &[Column]) -> impl Fn(usize) -> bool {
+    let labels = columns.iter().find_map(|column| match &column.values {
+        ColumnValues::Labels(labels) if column.name == "species" => Some(labels),
+        _ => None,
+    });
+    let are_elements: Vec<bool> =
+        labels.map(|labels| labels.names.iter().map(|name| covalent(name).is_some()).collect()).unwrap_or_default();
+    let indices = labels.map_or(&[][..], |labels| &labels.indices);
+    move |row| indices.get(row).and_then(|index| are_elements.get(*index as usize)).copied().unwrap_or_default()
 }
 
 /// The twelve edges of the periodic cell, drawn as cylinders.
@@ -144,7 +170,7 @@ impl CellEdges {
                 })
             })
         });
-        added.corners.extend(corners);
+        added.balls.extend(corners.map(|corner| (corner, Look::of_edges())));
         Ok(())
     }
 }

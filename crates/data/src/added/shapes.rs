@@ -6,12 +6,14 @@ use pinhole::image::color::LinearRgb;
 use pinhole::scene::cone::{Cone, ConeError};
 use pinhole::scene::material::{Material, SurfaceProperties};
 use pinhole::scene::sphere_array::SphereArray;
+use pinhole::scene::tube::Tube;
 use pinhole::scene::{Appearance, Colors};
 
 /// The shapes that were added: the corners of the cell, which are spheres behind those of the data, and sticks.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct AddedShapes {
-    pub(super) corners: Vec<[f64; 4]>,
+    /// Spheres: the corners of the cell, and those between the pieces of tubes.
+    pub(super) balls: Vec<([f64; 4], Look)>,
     sticks: Vec<Cone>,
     /// The look of each stick.
     looks: Vec<Look>,
@@ -36,14 +38,19 @@ pub struct ArrowKey {
 pub(super) enum Look {
     /// Like the sphere of the data with this index.
     Sphere(u32),
-    /// Matt and opaque, in this colour.
-    Color(LinearRgb),
+    /// In this colour, with these surface properties.
+    Own(LinearRgb, SurfaceProperties),
 }
 
 impl Look {
     /// The look of edges of the cell: a dark grey, near that of outlines, which are as wide as an edge.
     pub(super) fn of_edges() -> Self {
-        Self::Color(LinearRgb::from_srgb8([0x33, 0x38, 0x3f]))
+        Self::of_color(LinearRgb::from_srgb8([0x33, 0x38, 0x3f]))
+    }
+
+    /// Matt and opaque, in this colour.
+    pub(super) fn of_color(color: LinearRgb) -> Self {
+        Self::Own(color, SurfaceProperties::default())
     }
 }
 
@@ -51,13 +58,13 @@ impl AddedShapes {
     /// Returns true if no shapes were added.
     #[must_use]
     pub fn is_empty(&self) -> bool {
-        self.sticks.is_empty() && self.corners.is_empty()
+        self.sticks.is_empty() && self.balls.is_empty()
     }
 
     /// The number of added spheres.
     #[must_use]
     pub fn sphere_count(&self) -> usize {
-        self.corners.len()
+        self.balls.len()
     }
 
     /// The sticks of bonds, then the edges of the cell, and then the parts of arrows.
@@ -96,44 +103,99 @@ impl AddedShapes {
     pub fn extend_array(&self, array: &mut SphereArray) {
         match array {
             SphereArray::F32(all) => {
-                all.extend(self.corners.iter().map(|sphere| sphere.map(|value| value as f32)));
+                all.extend(self.balls.iter().map(|(sphere, _)| sphere.map(|value| value as f32)));
             }
-            SphereArray::F64(all) => all.extend_from_slice(&self.corners),
+            SphereArray::F64(all) => all.extend(self.balls.iter().map(|(sphere, _)| *sphere)),
         }
     }
 
-    /// Returns the look of `count` spheres of the data, followed by the look of the added spheres and of the sticks.
-    /// Sticks of shining spheres are matt.
+    /// Returns the look of `count` spheres of the data without those that are not kept, followed by the look of the added
+    /// spheres and of the sticks. Sticks and tubes of shining spheres are matt.
     #[must_use]
-    pub fn extend_appearance(&self, appearance: &Appearance, count: usize) -> Appearance {
-        let (mut palette, mut colors) = match appearance.colors() {
+    pub fn extend_appearance(
+        &self,
+        appearance: &Appearance,
+        count: usize,
+        is_kept: impl Fn(usize) -> bool,
+    ) -> Appearance {
+        let (mut palette, colors) = match appearance.colors() {
             Colors::Palette { palette, indices } => (palette.clone(), indices.clone()),
             Colors::One(color) => (vec![*color], vec![0; count]),
             _ => ((0..count as u32).filter_map(|id| appearance.color(id)).collect(), (0..count as u32).collect()),
         };
         let mut surfaces = appearance.surfaces().to_vec();
-        let mut indices = appearance.surface_indices().map_or_else(|| vec![0; count], <[u32]>::to_vec);
-        let own_surface = surfaces.len() as u32;
-        surfaces.push(SurfaceProperties::default());
-        // Few colours are added, one after the other.
-        let mut own_color = |color: LinearRgb| {
-            if palette.last() != Some(&color) {
-                palette.push(color);
-            }
-            palette.len() as u32 - 1
-        };
+        let of_spheres = appearance.surface_indices().map_or_else(|| vec![0; count], <[u32]>::to_vec);
+        // Few looks are added, one after the other.
+        let (from, mut last) = (surfaces.len(), (None, 0, 0));
+        let all = self.balls.iter().map(|(_, look)| *look).chain(self.looks.iter().copied());
+        let added: Vec<[u32; 2]> = all
+            .map(|look| {
+                let (color, surface) = match look {
+                    Look::Sphere(id) => {
+                        return [&colors, &of_spheres].map(|all| all.get(id as usize).copied().unwrap_or_default());
+                    }
+                    Look::Own(color, surface) => (color, surface),
+                };
+                if last.0 != Some(color) {
+                    palette.push(color);
+                    (last.0, last.1) = (Some(color), palette.len() as u32 - 1);
+                }
+                let known = surfaces[from..].iter().position(|known| *known == surface);
+                last.2 = known.map_or(surfaces.len(), |known| from + known) as u32;
+                if known.is_none() {
+                    surfaces.push(surface);
+                }
+                [last.1, last.2]
+            })
+            .collect();
         let matt: Vec<u32> = (0..surfaces.len()).map(|index| matt(&mut surfaces, index)).collect();
-        let of_corners = std::iter::repeat_n(Look::of_edges(), self.corners.len());
-        for look in of_corners.chain(self.looks.iter().copied()) {
-            let (color, surface) = match look {
-                Look::Sphere(id) => [&colors, &indices].map(|all| all.get(id as usize).copied().unwrap_or_default()),
-                Look::Color(color) => [own_color(color), own_surface],
-            }
-            .into();
-            colors.push(color);
-            indices.push(matt.get(surface as usize).copied().unwrap_or(surface));
-        }
+        let kept = (0..count).filter(|index| is_kept(*index)).map(|index| [colors[index], of_spheres[index]]);
+        let added = added.iter().map(|[color, surface]| [*color, matt[*surface as usize]]);
+        let (colors, indices) = kept.chain(added).map(|[color, surface]| (color, surface)).unzip();
         Appearance::new(Colors::Palette { palette, indices: colors }).with_surfaces(surfaces, indices)
+    }
+
+    /// Adds a tube through points. `look` is that at each point.
+    pub(crate) fn push_tube(
+        &mut self,
+        tube: &Tube,
+        points: &[[f64; 4]],
+        look: impl Fn(usize) -> (LinearRgb, SurfaceProperties),
+    ) -> Result<(), AddError> {
+        let place = |point: &[f64]| DVec3::from_slice(&point[..3]);
+        // The point that is nearest to a piece. Pieces and points are in the same order.
+        let walk = || {
+            let mut at = 0;
+            move |piece: DVec3| {
+                while at + 1 < points.len()
+                    && place(&points[at + 1]).distance(piece) < place(&points[at]).distance(piece)
+                {
+                    at += 1;
+                }
+                at
+            }
+        };
+        let own = |at: usize| {
+            let (color, surface) = look(at);
+            Look::Own(color, surface)
+        };
+        let refused = |error: &dyn std::fmt::Display| AddError(format!("a tube cannot be drawn: {error}"));
+        let mut nearest = walk();
+        for sphere in &tube.spheres {
+            pinhole::scene::sphere::check(*sphere).map_err(|error| refused(&error))?;
+            self.balls.push((*sphere, own(nearest(place(sphere)))));
+        }
+        let mut nearest = walk();
+        for side in &tube.sides {
+            let middle = 0.5 * (DVec3::from(side.start) + DVec3::from(side.end));
+            self.push(*side, own(nearest(middle))).map_err(|error| refused(&error))?;
+        }
+        Ok(())
+    }
+
+    /// Adds a note for the user.
+    pub(crate) fn note(&mut self, note: String) {
+        self.notes.push(note);
     }
 }
 

@@ -8,6 +8,7 @@ use glam::DVec3;
 
 use super::error::{SelectError, error_at};
 use super::graph::Graph;
+use super::named::NamedSelections;
 use super::tree::Word;
 use super::words::{Key, all_words, key_of, nearest};
 use crate::added::bonded_pairs;
@@ -21,6 +22,7 @@ const MOST_NOTES: usize = 8;
 /// The data on which a selection is evaluated, and what was found in it so far.
 pub(super) struct Data<'a> {
     pub(super) text: &'a str,
+    pub(super) names: &'a NamedSelections,
     pub(super) loaded: &'a Dataset,
     pub(super) notes: Vec<String>,
     found: HashMap<String, Source<'a>>,
@@ -47,10 +49,10 @@ pub(super) enum Values<'a> {
 }
 
 impl<'a> Data<'a> {
-    pub(super) fn new(text: &'a str, loaded: &'a Dataset) -> Self {
+    pub(super) fn new(text: &'a str, names: &'a NamedSelections, loaded: &'a Dataset) -> Self {
         let (found, as_numbers) = (HashMap::new(), HashMap::new());
         let (residues, points, graph, kinds) = (None, None, None, None);
-        Self { text, loaded, notes: Vec::new(), found, residues, points, graph, kinds, as_numbers }
+        Self { text, names, loaded, notes: Vec::new(), found, residues, points, graph, kinds, as_numbers }
     }
 
     pub(super) fn len(&self) -> usize {

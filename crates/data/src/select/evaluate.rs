@@ -6,14 +6,20 @@ use glam::DVec3;
 
 use super::data::{Data, Values};
 use super::error::SelectError;
+use super::named::NamedSelections;
 use super::near::{Grid, is_somewhere};
 use super::tree::{Bonded, Near, Node, Place, Word};
 use crate::cell::PeriodicCell;
 use crate::load::Dataset;
 
 /// Returns for each sphere whether it matches, and notes for the user.
-pub(super) fn evaluate(node: &Node, text: &str, loaded: &Dataset) -> Result<(Vec<bool>, Vec<String>), SelectError> {
-    let mut data = Data::new(text, loaded);
+pub(super) fn evaluate(
+    node: &Node,
+    text: &str,
+    names: &NamedSelections,
+    loaded: &Dataset,
+) -> Result<(Vec<bool>, Vec<String>), SelectError> {
+    let mut data = Data::new(text, names, loaded);
     let matches = data.matches(node, false, None)?;
     Ok((matches, data.notes))
 }
@@ -34,6 +40,7 @@ impl Data<'_> {
             Node::Compare { sides, operators } => return self.compare(sides, operators, is_negated),
             Node::List { key, values, is_negated: is_other } => return self.list(key, values, is_negated != *is_other),
             Node::Near { kind, reach, of, at } => return self.near(*kind, *reach, of, *at, (is_negated, kept)),
+            Node::Named(name) => return self.named(name, is_negated, kept),
             Node::Unknown(word) => return Err(self.unknown(word)),
             Node::Class(word) => self.class(word)?,
             Node::Nearest { count, of, at } => self.nearest(*count, of, *at)?,
@@ -41,6 +48,21 @@ impl Data<'_> {
             Node::Same { key, of } => self.same(key, of)?,
         };
         Ok(if is_negated { set.into_iter().map(|is| !is).collect() } else { set })
+    }
+
+    /// Evaluates the selection with a name.
+    fn named(&mut self, name: &Word, is_negated: bool, kept: Option<&[bool]>) -> Result<Vec<bool>, SelectError> {
+        if self.is_column(&name.text) {
+            let problem = format!("`{0}` is a column of the file; choose another name, such as my_{0}", name.text);
+            return Err(self.error(name.at, problem));
+        }
+        let names = self.names;
+        let Some(named) = names.get(&name.text) else { return Err(self.unknown(name)) };
+        let outer = std::mem::replace(&mut self.text, &named.text);
+        let matches = self.matches(&named.parsed.node, is_negated, kept);
+        self.text = outer;
+        named.parsed.notes.iter().for_each(|note| self.note(note.clone()));
+        matches
     }
 
     fn joined(

@@ -31,6 +31,7 @@ mod error;
 mod evaluate;
 mod foreign;
 mod graph;
+mod named;
 mod near;
 mod parse;
 mod residues;
@@ -42,6 +43,7 @@ mod tree;
 mod words;
 
 pub use error::SelectError;
+pub use named::{NameError, NamedSelections};
 
 use std::fmt;
 use std::str::FromStr;
@@ -51,11 +53,13 @@ use pinhole::internals::text::one_line;
 
 /// An expression that chooses the spheres to keep.
 ///
-/// Two selections are equal if their texts are.
+/// Two selections are equal if their texts are, and those of the names that they may use.
 #[derive(Clone, Debug)]
 pub struct Selection {
     text: String,
     parsed: parse::Parsed,
+    /// The selections that it may use by their names.
+    names: NamedSelections,
 }
 
 /// The result of applying a selection.
@@ -72,7 +76,7 @@ pub struct KeptSpheres {
 
 impl PartialEq for Selection {
     fn eq(&self, other: &Self) -> bool {
-        self.text == other.text
+        self.text == other.text && self.names == other.names
     }
 }
 
@@ -86,7 +90,18 @@ impl FromStr for Selection {
     type Err = SelectError;
 
     fn from_str(text: &str) -> Result<Self, SelectError> {
-        Ok(Self { text: text.to_owned(), parsed: parse::parse(text)? })
+        NamedSelections::default().selection(text)
+    }
+}
+
+impl NamedSelections {
+    /// Reads a selection that may use the names.
+    ///
+    /// # Errors
+    /// Returns an error if the text is no selection.
+    pub fn selection(&self, text: &str) -> Result<Selection, SelectError> {
+        let parsed = parse::parse(text, &|name| self.has(name))?;
+        Ok(Selection { text: text.to_owned(), parsed, names: self.clone() })
     }
 }
 
@@ -96,22 +111,30 @@ impl Selection {
     /// # Errors
     /// Returns an error if the expression needs what the data lacks, such as a column, or compares text with numbers.
     pub fn matches(&self, data: &Dataset) -> Result<(Vec<bool>, Vec<String>), SelectError> {
-        let (matches, found) = evaluate::evaluate(&self.parsed.node, &self.text, data)?;
+        let (matches, found) = evaluate::evaluate(&self.parsed.node, &self.text, &self.names, data)?;
         Ok((matches, self.parsed.notes.iter().cloned().chain(found).collect()))
+    }
+
+    /// Does the same as [`Selection::matches`], for a selection that must not be empty.
+    ///
+    /// # Errors
+    /// Returns the errors of [`Selection::matches`], and an error if there are spheres but none matches.
+    pub fn chosen(&self, data: &Dataset) -> Result<(Vec<bool>, Vec<String>), SelectError> {
+        let (is_chosen, notes) = self.matches(data)?;
+        if !is_chosen.is_empty() && !is_chosen.contains(&true) {
+            let hint = self.parsed.remedy.as_ref().or(notes.first()).map_or(String::new(), |note| format!("; {note}"));
+            return Err(SelectError::Nothing { expression: one_line(&self.text), of: is_chosen.len(), hint });
+        }
+        Ok((is_chosen, notes))
     }
 
     /// Leaves out the spheres that do not match, as [`Dataset::keep`] does.
     ///
     /// # Errors
-    /// Returns the errors of [`Selection::matches`], and an error if there are spheres but none matches. The data
-    /// are unchanged then.
+    /// Returns the errors of [`Selection::chosen`]. The data are unchanged then.
     pub fn apply(&self, loaded: &mut Dataset) -> Result<KeptSpheres, SelectError> {
-        let (is_kept, notes) = self.matches(loaded)?;
+        let (is_kept, notes) = self.chosen(loaded)?;
         let (kept, of) = (is_kept.iter().filter(|kept| **kept).count(), is_kept.len());
-        if kept == 0 && of > 0 {
-            let hint = self.parsed.remedy.as_ref().or(notes.first()).map_or(String::new(), |note| format!("; {note}"));
-            return Err(SelectError::Nothing { expression: one_line(&self.text), of, hint });
-        }
         loaded.keep(&is_kept);
         Ok(KeptSpheres { kept, of, notes })
     }

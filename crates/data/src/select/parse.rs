@@ -17,14 +17,17 @@ pub(super) struct Parsed {
     pub(super) notes: Vec<String>,
     /// The remedy if nothing is selected, because an operator takes all that follows.
     pub(super) remedy: Option<String>,
+    /// The names of other selections that it uses.
+    pub(super) uses: Vec<String>,
 }
 
-pub(super) fn parse(text: &str) -> Result<Parsed, SelectError> {
-    let scanner = Scanner { text, at: 0 };
-    let mut parser = Parser { scanner, depth: 0, steps: Vec::new(), notes: Vec::new(), remedy: None };
+/// Parses a selection that may use other selections, those of which `is_name` knows the names.
+pub(super) fn parse(text: &str, is_name: &dyn Fn(&str) -> bool) -> Result<Parsed, SelectError> {
+    let (steps, notes, uses) = (Vec::new(), Vec::new(), Vec::new());
+    let mut parser = Parser { scanner: Scanner { text, at: 0 }, depth: 0, steps, notes, remedy: None, is_name, uses };
     let node = parser.selection()?;
     match parser.scanner.rest() {
-        "" => Ok(Parsed { node, notes: parser.notes, remedy: parser.remedy }),
+        "" => Ok(Parsed { node, notes: parser.notes, remedy: parser.remedy, uses: parser.uses }),
         _ => Err(parser.scanner.wanted("`and`, `or` or the end")),
     }
 }
@@ -36,6 +39,8 @@ pub(super) struct Parser<'a> {
     pub(super) steps: Vec<Step>,
     pub(super) notes: Vec<String>,
     pub(super) remedy: Option<String>,
+    is_name: &'a dyn Fn(&str) -> bool,
+    uses: Vec<String>,
 }
 
 /// Terms that are joined by `and`.
@@ -257,6 +262,11 @@ impl Parser<'_> {
         if class_of(name).is_some() && key_of(name).is_none() && !self.is_operand(name) {
             self.scanner.at += name.len();
             return Ok(Node::Class(Word { text: name.to_lowercase(), at }));
+        }
+        if (self.is_name)(name) && !self.is_operand(name) {
+            self.scanner.at += name.len();
+            self.uses.push(name.to_owned());
+            return Ok(Node::Named(Word { text: name.to_owned(), at }));
         }
         let starts_foreign = rest.starts_with(['/', ':', '#', '@']) || (rest.starts_with('.') && !name.is_empty());
         match foreign::remedy(rest).filter(|_| starts_foreign) {

@@ -24,6 +24,8 @@ pub(super) enum Node {
     /// A word alone that is neither a key nor a class.
     Unknown(Word),
     Class(Word),
+    /// The selection with this name.
+    Named(Word),
     /// Spheres at some distance from others.
     Near {
         kind: Near,

@@ -1,6 +1,8 @@
 //! The samples of a picture in sRGB, into which annotations are blended, and the shapes of annotations before they have
 //! a place and a colour.
 
+use glam::Vec2;
+
 use super::font;
 use pinhole::image::encoding::Bits;
 
@@ -105,6 +107,8 @@ pub(super) enum Shape {
     Bar { place: [i64; 2], thickness: i64, colors: Vec<[u8; 3]>, lies: bool },
     /// A disk.
     Disk { center: [f32; 2], radius: f32, paint: Paint },
+    /// A line between two points, with half of its width at both.
+    Line { ends: [[f32; 2]; 2], widths: [f32; 2], paint: Paint },
     /// One line of text, at the start of its baseline.
     Text { text: String, at: [f32; 2], em: f32 },
 }
@@ -140,6 +144,11 @@ impl Block {
         self.shapes.push(Shape::Rect { rect, paint });
     }
 
+    /// Adds a line with half of its width at both ends.
+    pub(super) fn line(&mut self, ends: [[f32; 2]; 2], widths: [f32; 2], paint: Paint) {
+        self.shapes.push(Shape::Line { ends, widths, paint });
+    }
+
     /// Adds a frame of this line width around the outside of a rectangle.
     pub(super) fn frame(&mut self, [left, top, right, bottom]: [f32; 4], line: f32) {
         let (l, t, r, b) = (left - line, top - line, right + line, bottom + line);
@@ -170,6 +179,9 @@ impl Block {
                 }
                 Shape::Disk { center: [x, y], radius, paint } => {
                     disk([x + dx, y + dy], *radius, color(paint), canvas);
+                }
+                Shape::Line { ends, widths, paint } => {
+                    line(ends.map(|[x, y]| [x + dx, y + dy]), *widths, color(paint), canvas);
                 }
                 Shape::Text { text, at: [x, y], em } => {
                     // The baseline is rounded to an edge between two rows of pixels, which keeps letters sharp.
@@ -217,6 +229,26 @@ fn disk([x, y]: [f32; 2], radius: f32, color: [u8; 3], canvas: &mut Canvas<'_>) 
             let (dx, dy) = (column as f32 + 0.5 - x, row as f32 + 0.5 - y);
             let coverage = (radius + 0.5 - dx.hypot(dy)).clamp(0.0, 1.0);
             canvas.blend(column, row, color, coverage);
+        }
+    }
+}
+
+/// Draws a line between two points, with half of its width at both. Its edge is treated as straight when coverage is
+/// computed, and its ends are flat.
+fn line([from, to]: [[f32; 2]; 2], [first, last]: [f32; 2], color: [u8; 3], canvas: &mut Canvas<'_>) {
+    let [from, to] = [from, to].map(Vec2::from);
+    let (length, along) = ((to - from).length(), (to - from).normalize_or_zero());
+    let reach = first.max(last) + 1.0;
+    let (low, high) = (from.min(to) - reach, from.max(to) + reach);
+    let [left, top, right, bottom] = pixels([low.x, low.y, high.x, high.y], canvas);
+    for row in top..bottom {
+        for column in left..right {
+            let offset = Vec2::new(column as f32 + 0.5, row as f32 + 0.5) - from;
+            let at = offset.dot(along);
+            let half = first + (last - first) * (at / length.max(f32::MIN_POSITIVE)).clamp(0.0, 1.0);
+            let across = (half + 0.5 - offset.perp_dot(along).abs()).clamp(0.0, 1.0);
+            let between = (at + 0.5).clamp(0.0, 1.0) * (length - at + 0.5).clamp(0.0, 1.0);
+            canvas.blend(column, row, color, across * between);
         }
     }
 }

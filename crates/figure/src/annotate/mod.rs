@@ -1,4 +1,4 @@
-//! Legends, scale bars and labels, drawn over an encoded picture.
+//! Legends, scale bars, axes and labels, drawn over an encoded picture.
 //!
 //! Annotations are drawn on the samples of a PNG, after exposure and tone curve, so that neither changes them: the bar
 //! of a legend has exactly the colours of the map. Light does make spheres brighter or darker than the bar; with flat
@@ -15,6 +15,7 @@
 //! assert!(rgb.iter().any(|sample| *sample < 128));
 //! ```
 
+mod axes;
 mod canvas;
 mod font;
 mod key_arrow;
@@ -27,12 +28,13 @@ mod ticks;
 
 use pinhole::image::encoding::Encoding;
 
+pub use axes::Axes;
 pub use canvas::Canvas;
 pub use font::missing_characters;
 pub use key_arrow::KeyArrow;
 pub use legend::Legend;
 pub use place::{Anchor, Panel, Position, PositionError};
-pub use plan::{AnnotationError, AnnotationPlan, LegendPlan, ScaleBarPlan, TextPlan};
+pub use plan::{AnnotationError, AnnotationPlan, AxesPlan, LegendPlan, ScaleBarPlan, TextPlan};
 pub use scale_bar::{ScaleBar, ScaleBarError, pixels_per_unit};
 
 use canvas::Block;
@@ -48,6 +50,8 @@ pub enum Annotation {
     KeyArrow(KeyArrow),
     /// The size of a length in the picture.
     ScaleBar(ScaleBar),
+    /// The directions of x, y and z.
+    Axes(Axes),
     /// A text.
     Label(Label),
 }
@@ -94,6 +98,7 @@ impl Annotations {
             Annotation::Legend(legend) => legend.title(),
             Annotation::KeyArrow(arrow) => &arrow.name,
             Annotation::ScaleBar(bar) => &bar.unit,
+            Annotation::Axes(_) => "",
             Annotation::Label(label) => &label.text,
         })
     }
@@ -119,6 +124,7 @@ impl Annotations {
             Annotation::Legend(legend) => (legend.position, legend.block(em, size)),
             Annotation::KeyArrow(arrow) => (arrow.position, arrow.block(em)),
             Annotation::ScaleBar(bar) => (bar.position, bar.block(em)),
+            Annotation::Axes(axes) => (axes.position, axes.block(em)),
             Annotation::Label(label) => (label.position, label.block(em)),
         };
         self.items.iter().map(block).collect()

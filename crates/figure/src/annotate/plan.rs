@@ -5,7 +5,7 @@ use serde::{Deserialize, Serialize};
 
 use super::key_arrow::KeyArrow;
 use super::scale_bar::{ScaleBar, ScaleBarError, pixels_per_unit};
-use super::{Annotation, Annotations, Label, Legend, Panel, Position, missing_characters};
+use super::{Annotation, Annotations, Axes, Label, Legend, Panel, Position, missing_characters};
 use crate::color_by::ColorKey;
 use crate::color_by::number::short;
 use pinhole::camera::View;
@@ -21,6 +21,8 @@ pub struct AnnotationPlan {
     pub legend: Option<LegendPlan>,
     /// A scale bar.
     pub scale_bar: Option<ScaleBarPlan>,
+    /// The directions of x, y and z.
+    pub axes: Option<AxesPlan>,
     /// Labels.
     pub labels: Vec<Label>,
     /// The vector that arrows show, for which a legend needs room.
@@ -63,6 +65,14 @@ pub struct ScaleBarPlan {
     pub position: Option<Position>,
 }
 
+/// The directions of x, y and z that a user wants.
+#[derive(Clone, Debug, Default, PartialEq, Deserialize, Serialize)]
+#[serde(default, deny_unknown_fields)]
+pub struct AxesPlan {
+    /// The position; by default the bottom left corner.
+    pub position: Option<Position>,
+}
+
 /// The reason why annotations are impossible.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
 #[non_exhaustive]
@@ -79,7 +89,7 @@ impl AnnotationPlan {
     /// Returns true if there is nothing to draw.
     #[must_use]
     pub fn is_empty(&self) -> bool {
-        self.legend.is_none() && self.scale_bar.is_none() && self.labels.is_empty()
+        self.legend.is_none() && self.scale_bar.is_none() && self.axes.is_none() && self.labels.is_empty()
     }
 
     /// Returns the labels and the legend of colours, which do not depend on the camera.
@@ -160,6 +170,11 @@ impl AnnotationPlan {
                 ));
             }
             drawn = drawn.with(Annotation::ScaleBar(bar));
+        }
+        if let Some(AxesPlan { position }) = &self.axes {
+            let mut axes = Axes::new(view);
+            axes.position = position.unwrap_or(axes.position);
+            drawn = drawn.with(Annotation::Axes(axes));
         }
         let lacking = missing_characters(&drawn.texts().collect::<String>());
         if !lacking.is_empty() {

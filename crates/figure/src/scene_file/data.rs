@@ -3,10 +3,10 @@
 
 use serde::{Deserialize, Serialize};
 
-use super::span::KeyError;
+use super::show::Show;
+use super::span::{KeyError, positive};
 use crate::color_by::Mapping;
 use pinhole::image::color::LinearRgb;
-use pinhole::range::RangeError;
 use pinhole::scene::material::SurfaceProperties;
 use pinhole_data::added::{Additions, Arrows, BondLength, Bonds, CellEdges};
 use pinhole_data::select::Selection;
@@ -41,6 +41,11 @@ pub struct Data {
     pub leave_out: Vec<(String, Vec<String>)>,
     /// Which spheres are kept; all if there is no such expression.
     pub select: Option<Selection>,
+    /// Rules for what is drawn, and as what. Without any, all spheres are drawn as spheres, or as balls where there are
+    /// bonds.
+    pub shows: Vec<Show>,
+    /// The spheres that a camera frames; all if there is no such expression.
+    pub focus: Option<Selection>,
     /// The edges of the cell, bonds, and arrows.
     pub additions: Additions,
     /// What columns decide: colours, radii, opacities, strengths of light.
@@ -93,16 +98,11 @@ impl Data {
             elements_by: Vec::new(),
             leave_out: Vec::new(),
             select: None,
+            shows: Vec::new(),
+            focus: None,
             additions: Additions::default(),
         }
     }
-}
-
-/// Checks that a number, if it is given, is finite and greater than 0.
-pub(super) fn positive(key: &'static str, value: Option<f64>) -> Result<Option<f64>, RangeError> {
-    let range = "finite and greater than 0";
-    let within = |value| RangeError::unless_within(key, value, [f64::from_bits(1), f64::MAX], range);
-    value.map(within).transpose()
 }
 
 /// The key `box`.

@@ -1,14 +1,17 @@
 //! Makes the scene of data, as the keys of a scene file say.
 
 use super::data::{Data, Element};
+use super::data_error::DataError;
 use super::shapes::OwnShapes;
+use super::show::{RuleLooks, shown};
 use super::span::DEFAULT_COLOR;
-use crate::color_by::{ColorBy, ColorByError, ColorKey};
+use crate::color_by::{ColorBy, ColorKey};
 use pinhole::image::color::LinearRgb;
-use pinhole::scene::{Colors, Scene, SceneError};
-use pinhole_data::added::{AddError, ArrowKey};
+use pinhole::scene::{Colors, Scene};
+use pinhole_data::added::ArrowKey;
 use pinhole_data::load::{Column, ColumnValues, Dataset, Labels};
-use pinhole_data::select::{KeptSpheres, SelectError};
+use pinhole_data::select::KeptSpheres;
+use pinhole_data::show::ShowRule;
 
 /// The scene of data, with what else the keys of the scene file say about them.
 #[derive(Clone, Debug)]
@@ -29,27 +32,6 @@ pub struct DataScene {
     pub kept: Option<KeptSpheres>,
     /// The number of bonds, if bonds are drawn.
     pub bonds: Option<usize>,
-}
-
-/// The reason why the keys of a scene file and its data do not make a scene.
-#[derive(Clone, Debug, PartialEq, thiserror::Error)]
-#[non_exhaustive]
-pub enum DataError {
-    /// The selection does not apply to the data.
-    #[error("`select`: {0}")]
-    Select(#[from] SelectError),
-    /// Bonds, the edges of the cell or arrows cannot be added.
-    #[error(transparent)]
-    Add(#[from] AddError),
-    /// A column cannot decide what it should.
-    #[error(transparent)]
-    ColorBy(#[from] ColorByError),
-    /// The data has no text column that a key of the scene file names.
-    #[error("{0}")]
-    NoColumn(String),
-    /// A sphere of the scene is out of range.
-    #[error(transparent)]
-    Scene(#[from] SceneError),
 }
 
 impl Data {
@@ -81,16 +63,20 @@ impl Data {
         loaded.correct_notes(self.mapping.color.is_some(), has_radii, is_given);
         let absent = self.absent_elements(&loaded)?;
         let left_out = self.leave_out(&mut loaded)?;
+        let rules: Vec<ShowRule> = self.shows.iter().map(|show| show.rule.clone()).collect();
+        let mut shown = shown(&rules, &loaded)?;
+        let focus = self.focus.as_ref().map(|focus| focus.chosen(&loaded)).transpose().map_err(DataError::Focus)?;
         let mut notes = std::mem::take(&mut loaded.notes);
         notes.extend(kept.iter().flat_map(|kept| kept.notes.clone()).chain(left_out));
         let mut mapped = self.mapping.apply(&mut loaded)?;
         notes.append(&mut mapped.notes);
         notes.extend(absent);
+        notes.extend(focus.iter().flat_map(|(_, notes)| notes.clone()));
         let elements = self.element_of_each(&loaded)?;
         let scale = self.radius_scale;
         let is_scaled = scale.to_bits() != 1.0_f64.to_bits();
         if !(has_radii || is_scaled || self.radius.is_some()) {
-            self.additions.shrink(&mut loaded);
+            self.additions.shrink(&mut loaded, |index| shown.as_ref().is_none_or(|shown| shown.is_plain(index)));
         }
         if is_scaled || !elements.is_empty() {
             let of_element = |index: usize| self.element(*elements.get(index)?)?.radius;
@@ -98,8 +84,13 @@ impl Data {
                 .spheres
                 .map_radii(|index, radius| of_element(index).filter(|_| !has_radii).unwrap_or(radius) * scale);
         }
+        if let Some(shown) = &mut shown {
+            notes.append(&mut shown.notes);
+            shown.set_radii(&mut loaded);
+        }
+        let of_elements = loaded.colors.clone().filter(|_| shown.is_some());
         let count = loaded.spheres.len();
-        let color_key = mapped.coloring.as_ref().map(|coloring| coloring.key.clone());
+        let mut color_key = mapped.coloring.as_ref().map(|coloring| coloring.key.clone());
         let colors = match color_key {
             Some(_) => Colors::One(LinearRgb::WHITE),
             None => self.colors(loaded.colors.take(), &elements, count),
@@ -109,14 +100,36 @@ impl Data {
         let differ = surfaces.iter().any(|surface| *surface != self.surface);
         let surface_of: &[u32] = if differ { &elements } else { &[] };
         let mut appearance = mapped.appearance(count, colors, &surfaces, surface_of);
-        let added = self.additions.add(&loaded, &appearance)?;
+        let looks =
+            shown.as_ref().map(|shown| RuleLooks::new(&self.shows, shown, &loaded, &appearance, of_elements.as_ref()));
+        let looks = looks.transpose()?;
+        let of_rules = looks.as_ref().map(|looks| looks.appearance(count));
+        let drawn = shown.as_ref().map(|shown| shown.drawn_spheres(&loaded, self.additions.bonds.is_some()));
+        let mut added = self.additions.add(&loaded, of_rules.as_ref().unwrap_or(&appearance), drawn.as_ref())?;
+        if let (Some(shown), Some(looks)) = (&shown, &looks) {
+            shown.add_tubes(&loaded, &mut added, |rule, index| looks.look(Some(rule), index))?;
+            notes.extend(looks.notes());
+            color_key = color_key.or_else(|| looks.key());
+        }
         notes.extend_from_slice(added.notes());
-        if !added.is_empty() {
-            appearance = added.extend_appearance(&appearance, count);
+        appearance = of_rules.unwrap_or(appearance);
+        let in_focus = focus.iter().flat_map(|(is_in, _)| (0..count).filter(|index| is_in[*index]));
+        let in_focus: Vec<[f64; 4]> = in_focus.map(|index| loaded.spheres.at(index)).collect();
+        let is_drawn = |index: usize| shown.as_ref().is_none_or(|shown| shown.is_drawn(index));
+        if !added.is_empty() || shown.is_some() {
+            appearance = added.extend_appearance(&appearance, count, is_drawn);
+            loaded.keep(&(0..count).map(is_drawn).collect::<Vec<_>>());
             added.extend_array(&mut loaded.spheres);
         }
-        let scene = own.scene_with(loaded.spheres, added.sticks(), appearance)?.with_added(added.sphere_count());
-        let bonds = self.additions.bonds.as_ref().map(|_| added.bonds());
+        let scene = own
+            .scene_with(loaded.spheres, added.sticks(), appearance)?
+            .with_added(added.sphere_count())
+            .with_focus(&in_focus);
+        let bonds = (self.additions.bonds.is_some() || added.bonds() > 0).then_some(added.bonds());
+        let kept = match &shown {
+            Some(shown) => shown.kept(kept),
+            None => kept,
+        };
         let arrow_key = added.arrow_key().cloned();
         Ok(DataScene { scene, color_key, arrow_key, columns: loaded.columns, notes, kept, bonds })
     }

@@ -7,14 +7,15 @@ use toml::Spanned;
 
 use super::camera_path::CameraPathTable;
 use super::cones::{ConeTable, CylinderTable};
-use super::data::{ArrowsValue, BondsValue, BoxValue, Data, Element, ElementTable, positive};
+use super::data::{ArrowsValue, BondsValue, BoxValue, Data, Element, ElementTable};
 use super::lighting::{DirectionalTable, GroundTable, IntegratorKind, LightTable, SkyTable};
 use super::mapping::{ByColumn, ColumnTable};
 use super::materials::{Materials, over};
 use super::shapes::SphereTable;
-use super::span::{KeyError, SceneFileError, WithSpan, unknown};
+use super::show::{ShowTable, shows};
+use super::span::{KeyError, SceneFileError, WithSpan, positive, unknown};
 use super::tubes::TubeTable;
-use crate::annotate::{AnnotationPlan, Annotations, Label, LegendPlan, ScaleBarPlan, TextPlan};
+use crate::annotate::{AnnotationPlan, Annotations, AxesPlan, Label, LegendPlan, ScaleBarPlan, TextPlan};
 use crate::color_by::{ColorBy, EmissionBy, Mapping, RadiusBy};
 use crate::settings::layers::Joined;
 use crate::settings::places::Places;
@@ -29,6 +30,7 @@ use pinhole::render::{PathTracing, Sampling, Shading, Studio};
 use pinhole::scene::material::SurfaceProperties;
 use pinhole_data::added::Additions;
 use pinhole_data::load::FORMATS;
+use pinhole_data::select::NamedSelections;
 
 /// All keys and tables at the top level of a scene file.
 #[derive(Clone, Debug, Default, Deserialize, Serialize)]
@@ -68,6 +70,14 @@ pub(crate) struct Document {
     pub(super) leave_out: Option<BTreeMap<String, Vec<String>>>,
     /// An expression that is true for the spheres to keep.
     pub(super) select: Option<String>,
+    /// Selections by names, which other selections may use.
+    #[serde(skip_serializing_if = "BTreeMap::is_empty")]
+    pub(super) selections: BTreeMap<String, String>,
+    /// Rules for what is drawn and as what, of which the last for a sphere counts.
+    #[serde(skip_serializing_if = "Vec::is_empty")]
+    pub(super) show: Vec<Table<ShowTable>>,
+    /// An expression that is true for the spheres that a camera frames; by default it frames all.
+    pub(super) focus: Option<String>,
     /// Whether the edges of the periodic cell are drawn, and their width.
     #[serde(rename = "box")]
     pub(super) cell: Option<BoxValue>,
@@ -95,6 +105,8 @@ pub(crate) struct Document {
     pub(super) legend: Option<Table<LegendPlan>>,
     /// A scale bar.
     pub(super) scale_bar: Option<Table<ScaleBarPlan>>,
+    /// The directions of x, y and z, as arrows over the picture.
+    pub(super) axes: Option<Table<AxesPlan>>,
     /// Texts over the picture.
     #[serde(skip_serializing_if = "Vec::is_empty")]
     pub(super) labels: Vec<Table<Label>>,
@@ -135,7 +147,7 @@ pub(crate) struct Document {
 }
 
 /// The keys at the top of a scene file that apply to its data, beside the tables `[elements.NAME]`.
-pub const KEYS_OF_DATA: [&str; 19] = [
+pub const KEYS_OF_DATA: [&str; 22] = [
     "format",
     "frame",
     "topology",
@@ -152,6 +164,9 @@ pub const KEYS_OF_DATA: [&str; 19] = [
     "opacity_by",
     "emission_by",
     "select",
+    "selections",
+    "show",
+    "focus",
     "box",
     "bonds",
     "arrows",
@@ -195,7 +210,13 @@ impl Document {
             };
             element().map_err(|error: KeyError| places.refused(&format!("elements.{name}"), error))
         });
-        let select = self.select.as_ref().map(|text| text.parse().map_err(|error| places.span("select").error(error)));
+        let selections = self.selections.iter().map(|(name, text)| (&**name, &**text));
+        let names = NamedSelections::new(selections)
+            .map_err(|error| places.span(&format!("selections.{}", error.name)).error(error))?;
+        let selection = |key: &str, text: &Option<String>| {
+            let selection = text.as_ref().map(|text| names.selection(text)).transpose();
+            selection.map_err(|error| places.span(key).error(error))
+        };
         let cell = self.cell.as_ref().map(BoxValue::edges).transpose();
         let bonds = self.bonds.as_ref().map(BondsValue::bonds).transpose();
         let arrows = self.arrows.as_ref().map(ArrowsValue::arrows).transpose();
@@ -232,7 +253,9 @@ impl Document {
             elements: elements.collect::<Result<_, _>>()?,
             elements_by: self.elements_by.clone().unwrap_or_default(),
             leave_out: self.leave_out.clone().into_iter().flatten().collect(),
-            select: select.transpose()?,
+            select: selection("select", &self.select)?,
+            focus: selection("focus", &self.focus)?,
+            shows: shows(&self.show, &names, &self.materials, places)?,
             additions,
             mapping: Mapping {
                 color: self.color_by.as_ref().map(|by| by.0.clone()),
@@ -254,6 +277,7 @@ impl Document {
         Ok(AnnotationPlan {
             legend: self.legend.as_ref().map(|Table(legend)| legend.clone()),
             scale_bar: self.scale_bar.as_ref().map(|Table(bar)| bar.clone()),
+            axes: self.axes.as_ref().map(|Table(axes)| axes.clone()),
             labels: self.labels.iter().map(|Table(label)| label.clone()).collect(),
             arrows: self.arrows.as_ref().map(|arrows| arrows.vector().to_owned()),
             text,

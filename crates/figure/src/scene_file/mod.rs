@@ -6,6 +6,7 @@
 mod camera_path;
 mod cones;
 mod data;
+mod data_error;
 mod data_scene;
 mod document;
 mod lighting;
@@ -13,6 +14,7 @@ mod mapping;
 mod materials;
 mod settled;
 mod shapes;
+mod show;
 pub(crate) mod span;
 mod tubes;
 
@@ -21,13 +23,16 @@ pub use cones::{ConeFile, OwnCones};
 pub(crate) use cones::{ConeTable, CylinderTable};
 pub(crate) use data::{ArrowsTable, BondsTable, BoxTable};
 pub use data::{Data, Element};
-pub use data_scene::{DataError, DataScene};
+pub use data_error::DataError;
+pub use data_scene::DataScene;
 pub(crate) use document::Document;
 pub use document::KEYS_OF_DATA;
 pub use lighting::IntegratorKind;
 pub use settled::Settled;
 pub use shapes::OwnShapes;
 pub(crate) use shapes::SphereTable;
+pub use show::{Show, ShowColor};
+pub(crate) use show::{ShowTable, unknown_style};
 pub use span::{DEFAULT_COLOR, SceneFileError};
 pub(crate) use tubes::TubeTable;
 

@@ -105,6 +105,13 @@ impl<'a> Lines<'a> {
     }
 }
 
+/// Checks that a number, if it is given, is finite and greater than 0.
+pub(super) fn positive(key: &'static str, value: Option<f64>) -> Result<Option<f64>, RangeError> {
+    let range = "finite and greater than 0";
+    let within = |value| RangeError::unless_within(key, value, [f64::from_bits(1), f64::MAX], range);
+    value.map(within).transpose()
+}
+
 /// An error about a key of a table, whose message begins with the key in backticks if it is about one key.
 pub(crate) enum KeyError {
     Range(RangeError),

@@ -78,7 +78,7 @@ impl Flag {
     /// Returns true if the flag may be given several times.
     #[must_use]
     pub fn is_list(&self) -> bool {
-        matches!(self.flag, "--label" | "--set")
+        matches!(self.flag, "--label" | "--set" | "--show" | "--hide" | "--ghost" | "--define")
     }
 
     /// The flag of this name, without dashes.
@@ -243,6 +243,20 @@ flags! {
             "Render only the spheres for which an expression is true, such as 'protein and not hydrogen', 'name CA CB and \
              resid 5 to 10', 'byres within 5 of resname HEM' or 'species == O and z > 3 and |v| < 2': the words of VMD, \
              and columns as for --color-by";
+        "--define" "selections", Keys(words::define), "NAME=EXPRESSION",
+            "Give a selection a name, which other selections may use, such as 'pocket=byres within 5 of resname HEM'; may \
+             be repeated";
+        "--show" "show", Keys(words::show), "[EXPRESSION =] STYLE[, KEY=VALUE]...",
+            "Draw the spheres for which an expression is true in a style, such as 'resname HEM = sticks, carbon=orange', \
+             'protein = trace, color=chain' or 'rest = ghost': spacefill, balls, sticks, lines, points, trace, ghost or \
+             hidden; keys: radius=, scale=, stick=, color= (CSS, element or a column), carbon=, opacity=, material=; may be \
+             repeated, and the last for a sphere counts";
+        "--hide" "show", Keys(words::hide), "EXPRESSION",
+            "Do not draw the spheres for which an expression is true; they still count for distances in selections";
+        "--ghost" "show", Keys(words::ghost), "EXPRESSION",
+            "Draw the spheres for which an expression is true faintly";
+        "--focus" "focus", Text, "EXPRESSION",
+            "Frame only the spheres for which an expression is true, whatever else is drawn";
         "--box" "box", Words(words::cell), "WIDTH" (""),
             "Draw the edges of the file's periodic cell, with this width [without a width: 1/300 of the cell's diagonal]";
         "--bonds" "bonds", Words(words::bonds), "FACTOR" (""),
@@ -287,6 +301,8 @@ flags! {
         "--scale-bar" "scale_bar", Keys(words::scale_bar), "LENGTH UNIT[@POSITION]" (""),
             "Show how long a length is; write the length, the unit, or both, such as --scale-bar=\"20 Å\", and a position \
              after an @ [without a length: a round one] [without a position: bottom-left]";
+        "--axes" "axes", Keys(words::axes), "POSITION" (""),
+            "Show the directions of x, y and z as arrows, at a position as for --legend [without a position: bottom-left]";
         "--label" "labels", Keys(words::label), "TEXT[@POSITION]",
             "Write a text at a position, such as \"a@top-right\"; may be repeated [without a position: top-left]";
         "--text-scale" "text.scale", Number, "F",

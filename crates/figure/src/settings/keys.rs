@@ -8,7 +8,7 @@ use serde::de::{DeserializeOwned, Deserializer, Error, IntoDeserializer, Visitor
 use serde::forward_to_deserialize_any;
 
 use crate::scene_file::{
-    ArrowsTable, BondsTable, BoxTable, ConeTable, CylinderTable, Document, SphereTable, TubeTable,
+    ArrowsTable, BondsTable, BoxTable, ConeTable, CylinderTable, Document, ShowTable, SphereTable, TubeTable,
 };
 
 /// A name that no key and no kind has.
@@ -22,6 +22,7 @@ pub fn keys_of(table: &str) -> Vec<&'static str> {
         "box" => keys_in::<BoxTable>(""),
         "bonds" => keys_in::<BondsTable>(""),
         "arrows" => keys_in::<ArrowsTable>(""),
+        "show" => keys_in::<ShowTable>(""),
         "spheres" => keys_in::<SphereTable>(""),
         "cylinders" => keys_in::<CylinderTable>(""),
         "cones" => keys_in::<ConeTable>(""),

@@ -49,6 +49,9 @@ pub(crate) struct Joined<'a> {
 /// values exclude each other.
 const WHOLE: [&str; 8] = ["arrows", "bonds", "box", "camera", "emission_by", "ground", "opacity_by", "radius_by"];
 
+/// Lists that later layers make longer.
+const LISTS: [&str; 2] = ["labels", "show"];
+
 /// Keys of colours, which may be written as CSS colours.
 const COLORS: [&str; 7] = ["ambient", "background", "color", "horizon", "missing", "nadir", "zenith"];
 
@@ -145,7 +148,7 @@ fn parse<'a>(text: &'a str, flag: Option<&'static str>, lines: &mut Lines<'a>) -
         let at = start + error.span().map_or(0, |span| span.start);
         lines.span(at).error(explain(error.message(), None))
     })?;
-    prepared_table(table.into_inner(), start, lines)
+    prepared_table(table.into_inner(), (start, false), lines)
 }
 
 fn style_of(name: &Key, lines: &Lines<'_>) -> Result<Style, SceneFileError> {
@@ -177,14 +180,14 @@ fn replace_whole(below: &mut DeTable<'_>, above: &DeTable<'_>) {
     }
 }
 
-/// Puts the values of `above` into `below`. Tables are joined key by key, and labels are appended.
+/// Puts the values of `above` into `below`. Tables are joined key by key, and some lists are appended.
 fn join<'a>(below: &mut DeTable<'a>, above: DeTable<'a>) {
     for (key, value) in above {
         let (span, name) = (value.span(), key.get_ref().as_ref());
         match (below.get_mut(name).map(Spanned::get_mut), value.into_inner()) {
             (Some(DeValue::Table(below)), DeValue::Table(above)) => join(below, above),
-            (Some(DeValue::Array(below)), DeValue::Array(above)) if name == "labels" => {
-                above.into_iter().for_each(|label| below.push(label));
+            (Some(DeValue::Array(below)), DeValue::Array(above)) if LISTS.contains(&name) => {
+                above.into_iter().for_each(|item| below.push(item));
             }
             // The name of a column stands for a table with this column.
             (Some(column @ DeValue::String(_)), DeValue::Table(above)) if name == "color_by" => {
@@ -209,11 +212,17 @@ fn take<'a>(table: &mut DeTable<'a>, key: &str) -> Option<Spanned<DeValue<'a>>> 
     }
 }
 
-/// Moves the positions of a layer to where its text begins among all, and writes CSS colours as `#rrggbb`.
-fn prepared_table<'a>(table: DeTable<'a>, start: usize, lines: &Lines<'_>) -> Result<DeTable<'a>, SceneFileError> {
+/// Moves the positions of a layer to where its text begins among all, and writes CSS colours as `#rrggbb`, but not where
+/// their keys may also name columns.
+fn prepared_table<'a>(
+    table: DeTable<'a>,
+    (start, in_columns): (usize, bool),
+    lines: &Lines<'_>,
+) -> Result<DeTable<'a>, SceneFileError> {
     let entry = |(key, value): (Spanned<DeString<'a>>, Spanned<DeValue<'a>>)| {
-        let is_color = COLORS.contains(&key.get_ref().as_ref());
-        let value = prepared(value, is_color, start, lines)?;
+        let name = key.get_ref().as_ref();
+        let has_columns = name == "show";
+        let value = prepared(value, COLORS.contains(&name) && !in_columns, (start, in_columns || has_columns), lines)?;
         Ok((Spanned::new(moved(&key.span(), start), key.into_inner()), value))
     };
     table.into_iter().map(entry).collect()
@@ -222,7 +231,7 @@ fn prepared_table<'a>(table: DeTable<'a>, start: usize, lines: &Lines<'_>) -> Re
 fn prepared<'a>(
     value: Spanned<DeValue<'a>>,
     is_color: bool,
-    start: usize,
+    (start, in_columns): (usize, bool),
     lines: &Lines<'_>,
 ) -> Result<Spanned<DeValue<'a>>, SceneFileError> {
     let span = moved(&value.span(), start);
@@ -233,11 +242,11 @@ fn prepared<'a>(
             DeValue::String(format!("#{r:02x}{g:02x}{b:02x}").into())
         }
         DeValue::Array(array) => {
-            let items = array.into_iter().map(|value| prepared(value, false, start, lines));
+            let items = array.into_iter().map(|value| prepared(value, false, (start, in_columns), lines));
             // Only a list that a header makes, such as `[[lights]]`, may be extended by one.
             DeValue::Array(items.collect::<Result<_, _>>()?)
         }
-        DeValue::Table(table) => DeValue::Table(prepared_table(table, start, lines)?),
+        DeValue::Table(table) => DeValue::Table(prepared_table(table, (start, in_columns), lines)?),
         value => value,
     };
     Ok(Spanned::new(span, value))

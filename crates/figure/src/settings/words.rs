@@ -5,6 +5,8 @@ use std::fmt::Write;
 use pinhole::camera::Viewpoint;
 
 use crate::annotate::Position;
+use crate::scene_file::unknown_style;
+use pinhole_data::show::ShowStyle;
 
 /// A text in quotes, as TOML writes it.
 #[must_use]
@@ -137,18 +139,58 @@ pub(super) fn bond_length(text: &str) -> Result<String, String> {
     positive(text).map(|length| format!("{{ length = {length} }}"))
 }
 
+/// Reads `KEY=VALUE`.
+fn pair(part: &str) -> Result<String, String> {
+    let wanted = || format!("`{}` is not KEY=VALUE, such as scale=2", part.trim());
+    let (key, value) = part.split_once('=').ok_or_else(wanted)?;
+    let value = value.trim().parse::<f64>().map_or_else(|_| quoted(value.trim()), toml_number);
+    Ok(format!("{} = {value}", quoted(key.trim())))
+}
+
 /// Reads `VECTOR[,KEY=VALUE]...`.
 pub(super) fn arrows(text: &str) -> Result<String, String> {
     let mut parts = text.split(',').map(str::trim);
     let vector = parts.next().unwrap_or_default();
-    let pair = |part: &str| {
-        let (key, value) = part.split_once('=').ok_or_else(|| format!("`{part}` is not KEY=VALUE, such as scale=2"))?;
-        let value = value.trim().parse::<f64>().map_or_else(|_| quoted(value.trim()), toml_number);
-        Ok(format!("{} = {value}", quoted(key.trim())))
-    };
     let pairs: Vec<String> = parts.map(pair).collect::<Result<_, String>>()?;
     let vector = quoted(vector);
     Ok(if pairs.is_empty() { vector } else { format!("{{ vector = {vector}, {} }}", pairs.join(", ")) })
+}
+
+/// Reads `SELECTION = STYLE[, KEY=VALUE]...`, or a style for all spheres.
+pub(super) fn show(text: &str) -> Result<String, String> {
+    let style_of = |part: &str| {
+        let name = part.split(',').next().unwrap_or_default().trim().to_owned();
+        ShowStyle::of_name(&name).map(|_| name)
+    };
+    let mut places = text.match_indices(['=', ':']).filter_map(|(at, _)| Some((at, style_of(&text[at + 1..])?)));
+    let (selection, rest, style) = match (places.next(), style_of(text)) {
+        (Some((at, style)), _) => (Some(text[..at].trim()), &text[at + 1..], style),
+        (None, Some(style)) => (None, text, style),
+        (None, None) => {
+            let last =
+                text.rsplit(['=', ':']).next().and_then(|part| part.split(',').next()).unwrap_or_default().trim();
+            return Err(format!("{}; write SELECTION = STYLE, such as 'resname HEM = sticks'", unknown_style(last)));
+        }
+    };
+    let pairs = rest.split(',').skip(1).map(pair).collect::<Result<Vec<_>, _>>()?;
+    let select = selection.filter(|text| !text.is_empty()).map(|text| format!("select = {}", quoted(text)));
+    let keys: Vec<String> = select.into_iter().chain([format!("as = {}", quoted(&style))]).chain(pairs).collect();
+    Ok(format!("show = [{{ {} }}]", keys.join(", ")))
+}
+
+pub(super) fn hide(text: &str) -> Result<String, String> {
+    Ok(format!("show = [{{ select = {}, as = \"hidden\" }}]", quoted(text)))
+}
+
+pub(super) fn ghost(text: &str) -> Result<String, String> {
+    Ok(format!("show = [{{ select = {}, as = \"ghost\" }}]", quoted(text)))
+}
+
+/// Reads `NAME=SELECTION`.
+pub(super) fn define(text: &str) -> Result<String, String> {
+    let (name, selection) =
+        text.split_once('=').ok_or("write NAME=SELECTION, such as 'pocket=within 5 of resname HEM'")?;
+    Ok(format!("selections = {{ {} = {} }}", quoted(name.trim()), quoted(selection.trim())))
 }
 
 /// Reads the ends of a range: numbers, percentiles, or nothing.
@@ -184,6 +226,14 @@ fn position(position: Position) -> String {
 pub(super) fn legend(text: &str) -> Result<String, String> {
     let at = text.parse::<Position>().map_err(|error| error.to_string())?;
     Ok(format!("legend.position = {}", position(at)))
+}
+
+pub(super) fn axes(text: &str) -> Result<String, String> {
+    if text.is_empty() {
+        return Ok("axes = {}".to_owned());
+    }
+    let at = text.parse::<Position>().map_err(|error| error.to_string())?;
+    Ok(format!("axes = {{ position = {} }}", position(at)))
 }
 
 /// Splits `TEXT@POSITION`. The part after the last @ belongs to the text unless it is a position.

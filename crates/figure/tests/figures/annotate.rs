@@ -1,6 +1,7 @@
 //! Legends, scale bars and labels in pictures.
 
 use pinhole::camera::{FisheyeCamera, OrthographicCamera, PanoramaCamera, PinholeCamera, Pose};
+use pinhole::geometry::bounds::Bounds;
 use pinhole::glam::DVec3;
 use pinhole::image::encoding::Bits;
 use pinhole::{Encoding, Film, Image, SphereArray, ToneCurve, View};
@@ -300,4 +301,50 @@ fn scene_files_have_keys_for_all_of_it() {
     let look = (plan.text.scale, plan.text.color.map(pinhole::LinearRgb::to_srgb8), plan.text.panel);
     assert_eq!(look, (Some(2.0), Some([255; 3]), Some(Panel::Never)));
     assert_eq!(file.encoding.dots_per_inch(), Some(300.0));
+}
+
+/// The number of pixels that are mostly red, green or blue, and their mean place relative to the middle of all.
+fn axes_drawn(text: &str) -> [(usize, [f32; 2]); 3] {
+    let file = SceneFile::parse(text).unwrap();
+    let film = file.film;
+    let camera = file.camera_parameters().camera(film.aspect(), &Bounds::of_sphere(DVec3::ZERO, 1.0).into()).unwrap();
+    let view = View::new(camera.as_ref(), film);
+    let (drawn, notes) = file.annotations.annotations(None, None, &view, DVec3::ZERO).unwrap();
+    assert_eq!(notes, [] as [&str; 0]);
+    let size = [film.width(), film.height()];
+    let mut rgb = vec![255; 3 * film.pixel_count() as usize];
+    drawn.draw(&mut Canvas::new(size, 3, Bits::Eight, &mut rgb).unwrap());
+    let places = |channel: usize| {
+        let is_shown = |pixel: &[u8]| {
+            (0..3).all(|other| other == channel || i32::from(pixel[channel]) - i32::from(pixel[other]) > 60)
+        };
+        let shown = rgb.chunks(3).enumerate().filter(move |(_, pixel)| is_shown(pixel));
+        shown.map(|(index, _)| [(index as u32 % size[0]) as f32, (index as u32 / size[0]) as f32]).collect::<Vec<_>>()
+    };
+    let mean = |places: &[[f32; 2]]| {
+        [0, 1].map(|axis| places.iter().map(|place| place[axis]).sum::<f32>() / places.len() as f32)
+    };
+    let all = [0, 1, 2].map(places);
+    // The arrows start at one point: the end of one is twice as far as its mean, more or less.
+    let origin = mean(&all.concat());
+    all.map(|places| {
+        let at = mean(&places);
+        (places.len(), [at[0] - origin[0], at[1] - origin[1]])
+    })
+}
+
+#[test]
+fn axes_point_as_the_camera_sees_them() {
+    let front = "[film]\nwidth = 400\nheight = 300\n[camera.orthographic]\neye = [0, 0, 9]\nlook_at = [0, 0, 0]\nhalf_extent = [4, 3]\n[axes]\n";
+    // x is to the right and y up; z points at the eye.
+    let [x, y, z] = axes_drawn(front);
+    assert!(x.0 > 20 && y.0 > 20 && z.0 < x.0, "{x:?} {y:?} {z:?}");
+    assert!(x.1[0] > y.1[0] + 4.0 && y.1[1] < x.1[1] - 4.0, "{x:?} {y:?}");
+    // Rows from below: the picture is the same upside down.
+    let [x, y, _] = axes_drawn(&front.replace("height = 300", "height = 300\ny = \"down\""));
+    assert!(x.1[0] > y.1[0] + 4.0 && y.1[1] > x.1[1] + 4.0, "{x:?} {y:?}");
+    // From the side, z is to the right and x points away.
+    let [x, _, z] =
+        axes_drawn(&front.replace("[0, 0, 9]", "[-9, 0, 0]").replace("[axes]", "[axes]\nposition = \"top\""));
+    assert!(z.1[0] > x.1[0] + 4.0 && x.0 < z.0, "{x:?} {z:?}");
 }

@@ -22,3 +22,4 @@ mod scene_file;
 mod scene_file_light;
 mod settings;
 mod settings_page;
+mod show;

@@ -1,0 +1,206 @@
+//! Representations: which spheres of the data are drawn, and as what.
+//!
+//! A [`ShowRule`] gives spheres a style, such as sticks. Later rules take precedence over earlier ones. A sphere is drawn in
+//! the style of the last rule for it; beside that it may be a part of a tube, from a rule with the style
+//! [`ShowStyle::Trace`]. The bonds between balls and sticks are those of [`Additions`](crate::added::Additions).
+
+mod rule;
+mod sizes;
+mod trace;
+
+pub use rule::{ShowRule, ShowStyle, ShownPart};
+
+use std::f64::consts::PI;
+
+use glam::DVec3;
+
+use crate::added::{DrawnSpheres, StickSize, element_test};
+use crate::load::Dataset;
+use crate::select::{KeptSpheres, SelectError};
+use sizes::Measures;
+
+/// How a sphere is drawn.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+enum Drawn {
+    /// As without rules.
+    Plain,
+    Not,
+    /// As this rule says.
+    By(u32),
+}
+
+/// How each sphere of some data is drawn.
+#[derive(Clone, Debug)]
+pub struct Shown<'a> {
+    rules: &'a [ShowRule],
+    drawn: Vec<Drawn>,
+    /// The rule for the tube of which a sphere is a part.
+    traces: Vec<Option<u32>>,
+    ghosts: Vec<bool>,
+    /// Notes for the user, one line each.
+    pub notes: Vec<String>,
+}
+
+impl<'a> Shown<'a> {
+    /// Applies rules to data.
+    ///
+    /// # Errors
+    /// Returns an error if a selection does not apply to the data.
+    pub fn new(rules: &'a [ShowRule], data: &Dataset) -> Result<Self, SelectError> {
+        let count = data.spheres.len();
+        let mut notes = Vec::new();
+        let mut parts: Vec<Option<Vec<bool>>> = Vec::with_capacity(rules.len());
+        for rule in rules {
+            parts.push(match &rule.part {
+                ShownPart::All => Some(vec![true; count]),
+                ShownPart::Rest => None,
+                ShownPart::Selected(selection) => match selection.chosen(data) {
+                    Ok((matches, found)) => {
+                        found.into_iter().for_each(|note| notes.extend((!notes.contains(&note)).then_some(note)));
+                        Some(matches)
+                    }
+                    // Another frame may have such spheres.
+                    Err(nothing @ SelectError::Nothing { .. }) => {
+                        notes.push(format!("`show`: {nothing}"));
+                        Some(vec![false; count])
+                    }
+                    Err(error) => return Err(error),
+                },
+            });
+        }
+        let rest: Vec<bool> = (0..count).map(|index| parts.iter().flatten().all(|part| !part[index])).collect();
+        let draws = |rule: &ShowRule| !matches!(rule.style, ShowStyle::Ghost | ShowStyle::Hidden);
+        let is_partial = rules.iter().any(draws);
+        let before = if is_partial { Drawn::Not } else { Drawn::Plain };
+        let mut shown =
+            Self { rules, drawn: vec![before; count], traces: vec![None; count], ghosts: vec![false; count], notes };
+        let mut is_named = vec![false; count];
+        for ((rule, part), number) in rules.iter().zip(&parts).zip(0..) {
+            let part = part.as_ref().unwrap_or(&rest);
+            for index in (0..count).filter(|index| part[*index]) {
+                shown.apply(rule.style, number, index);
+                is_named[index] = true;
+            }
+        }
+        let left_out = is_named.iter().filter(|is_named| !**is_named).count();
+        if is_partial && left_out > 0 {
+            shown.notes.push(format!(
+                "{left_out} of {count} spheres are in no rule of `show` and not drawn; --show 'rest = ghost' draws them \
+                 faintly"
+            ));
+        }
+        if count > 0 && !(0..count).any(|index| shown.is_drawn(index) || shown.traces[index].is_some()) {
+            shown.notes.push("`show` hides all spheres".to_owned());
+        }
+        Ok(shown)
+    }
+
+    fn apply(&mut self, style: ShowStyle, rule: u32, index: usize) {
+        match style {
+            ShowStyle::Ghost => {
+                self.ghosts[index] = true;
+                // A ghost looks as the sphere did, or as it would without rules.
+                if self.drawn[index] == Drawn::Not && self.traces[index].is_none() {
+                    self.drawn[index] = Drawn::Plain;
+                }
+                return;
+            }
+            ShowStyle::Hidden => (self.drawn[index], self.traces[index]) = (Drawn::Not, None),
+            ShowStyle::Trace => (self.drawn[index], self.traces[index]) = (Drawn::Not, Some(rule)),
+            _ => self.drawn[index] = Drawn::By(rule),
+        }
+        self.ghosts[index] = false;
+    }
+
+    /// Returns true if a sphere itself is drawn.
+    #[must_use]
+    pub fn is_drawn(&self, index: usize) -> bool {
+        self.drawn[index] != Drawn::Not
+    }
+
+    /// The number of spheres that are drawn, or part of a tube, after a selection kept some.
+    #[must_use]
+    pub fn kept(&self, selected: Option<KeptSpheres>) -> Option<KeptSpheres> {
+        let count = self.drawn.len();
+        let kept = (0..count).filter(|index| self.is_drawn(*index) || self.traces[*index].is_some()).count();
+        let selected = selected.unwrap_or(KeptSpheres { kept: count, of: count, notes: Vec::new() });
+        (kept < selected.of).then_some(KeptSpheres { kept, ..selected })
+    }
+
+    /// Returns true if a sphere is drawn as it is without rules.
+    #[must_use]
+    pub fn is_plain(&self, index: usize) -> bool {
+        self.drawn[index] == Drawn::Plain
+    }
+
+    /// Returns true if a sphere is a ghost, or the part of a tube there.
+    #[must_use]
+    pub fn is_ghost(&self, index: usize) -> bool {
+        self.ghosts[index]
+    }
+
+    /// The opacity of a surface of ghosts in the place of an opaque one. About half of the light comes through all of them:
+    /// a ray meets as many surfaces as the areas of all spheres go into that of their box, as Cauchy's formula says.
+    #[must_use]
+    pub fn ghost_opacity(&self, data: &Dataset) -> f32 {
+        /// The share of light that comes through.
+        const CLEAR: f64 = 0.5;
+        let ghosts = (0..self.drawn.len()).filter(|index| self.ghosts[*index] && self.is_drawn(*index));
+        let (mut area, mut low, mut high) = (0.0, DVec3::INFINITY, DVec3::NEG_INFINITY);
+        for [x, y, z, radius] in ghosts.map(|index| data.spheres.at(index)) {
+            area += 4.0 * PI * radius * radius;
+            (low, high) = (low.min(DVec3::new(x, y, z) - radius), high.max(DVec3::new(x, y, z) + radius));
+        }
+        let DVec3 { x, y, z } = high - low;
+        let layers = 2.0 * area / (2.0 * (x * y + y * z + z * x));
+        // Few surfaces are fainter still.
+        let opacity = 1.0 - CLEAR.powf(1.0 / layers.max(1.0));
+        if opacity.is_finite() { opacity.clamp(0.01, 0.25) as f32 } else { 0.25 }
+    }
+
+    /// The number of the rule for a sphere; `None` if it is drawn as without rules, or not at all.
+    #[must_use]
+    pub fn rule(&self, index: usize) -> Option<usize> {
+        match self.drawn[index] {
+            Drawn::By(rule) => Some(rule as usize),
+            Drawn::Plain | Drawn::Not => None,
+        }
+    }
+
+    /// The rules with the style [`ShowStyle::Trace`], and the spheres of each.
+    pub(crate) fn traces(&self) -> impl Iterator<Item = (usize, &ShowRule, Vec<usize>)> {
+        let spheres =
+            move |number: u32| (0..self.traces.len()).filter(move |index| self.traces[*index] == Some(number));
+        let traces = self.rules.iter().enumerate().filter(|(_, rule)| rule.style == ShowStyle::Trace);
+        traces.map(move |(number, rule)| (number, rule, spheres(number as u32).collect()))
+    }
+
+    /// Gives spheres the radii of their rules.
+    pub fn set_radii(&self, data: &mut Dataset) {
+        let measures = Measures::of(data);
+        let Dataset { spheres, columns, .. } = data;
+        let is_element = element_test(columns);
+        spheres.map_radii(|index, radius| match self.drawn[index] {
+            Drawn::By(rule) => measures.radius(&self.rules[rule as usize], radius, is_element(index)),
+            Drawn::Plain | Drawn::Not => radius,
+        });
+    }
+
+    /// What [`Additions::add`](crate::added::Additions::add) must know. `are_plain` says whether spheres without a rule have
+    /// sticks.
+    #[must_use]
+    pub fn drawn_spheres(&self, data: &Dataset, are_plain: bool) -> DrawnSpheres {
+        let measures = Measures::of(data);
+        let is_element = element_test(&data.columns);
+        let stick = |index: usize| match self.drawn[index] {
+            Drawn::Plain if are_plain => StickSize::OfBalls,
+            Drawn::By(rule) => measures.stick(&self.rules[rule as usize], is_element(index)),
+            Drawn::Plain | Drawn::Not => StickSize::None,
+        };
+        DrawnSpheres {
+            sticks: (0..self.drawn.len()).map(stick).collect(),
+            are_drawn: (0..self.drawn.len()).map(|index| self.is_drawn(index)).collect(),
+            need_bonds: self.rules.iter().any(|rule| rule.style.has_sticks()),
+        }
+    }
+}
