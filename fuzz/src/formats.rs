@@ -91,6 +91,10 @@ fn check(read: Result<Dataset, LoadError>) -> Result<(), String> {
     };
     is("colors", loaded.colors.as_ref().map_or(count, Vec::len))?;
     is("opacities", loaded.opacities.as_ref().map_or(count, Vec::len))?;
+    let is_bond = |[a, b]: &[u32; 2]| a < b && (*b as usize) < count;
+    if !(loaded.bonds.iter().all(is_bond) && loaded.bonds.is_sorted_by(|one, next| one < next)) {
+        return Err("bonds are not in order".to_owned());
+    }
     for column in &loaded.columns {
         match &column.values {
             ColumnValues::Numbers(numbers) => is("numbers", numbers.len())?,

@@ -43,6 +43,23 @@ impl PeriodicCell {
         if turns == DVec3::ZERO { point } else { point + self.edges * turns }
     }
 
+    /// The whole edges by which `to` must move to be the image nearest to `from`.
+    pub(crate) fn turns_to_nearest(&self, from: DVec3, to: DVec3) -> DVec3 {
+        let between = to - from;
+        let start = -(self.inverse * between).round();
+        let rows = self.inverse.transpose();
+        let steps = [rows.x_axis, rows.y_axis, rows.z_axis].map(|row| if row == DVec3::ZERO { 0..=0 } else { -1..=1 });
+        let [x, y, z] = steps;
+        let around = x.flat_map(|x| {
+            let z = z.clone();
+            y.clone().flat_map(move |y| z.clone().map(move |z| start + DVec3::from([x, y, z].map(f64::from))))
+        });
+        // Positions stay if no image is nearer.
+        let length = |turns: DVec3| self.moved(between, turns).length_squared();
+        let nearer = |best: DVec3, turns| if length(turns) < length(best) { turns } else { best };
+        around.fold(DVec3::ZERO, nearer) + DVec3::ZERO
+    }
+
     /// The images that are at most `reach` outside the cell, as indices of points in the cell and whole edges;
     /// `None` if they are too many.
     pub(crate) fn images(&self, points: &[DVec3], reach: f64) -> Option<Vec<(u32, DVec3)>> {

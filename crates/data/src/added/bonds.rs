@@ -2,10 +2,10 @@
 
 use glam::DVec3;
 
+use super::atoms::{Atoms, no_elements};
 use super::neighbours::{Neighbours, neighbours};
 use super::shapes::{AddError, AddedShapes, Look, between};
-use crate::load::{Covalent, Dataset, covalent};
-use pinhole::internals::text::{listed, shortened};
+use crate::load::{Dataset, covalent};
 use pinhole::scene::Appearance;
 use pinhole::scene::material::Material;
 use pinhole::scene::sphere_array::SphereArray;
@@ -21,10 +21,11 @@ pub struct Bonds {
 /// The greatest distance of bonded atoms, or spheres.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum BondLength {
-    /// Two atoms are bonded if they are closer than this factor times the sum of their covalent radii (Cordero et al.
-    /// 2008), unless both are hydrogen. Lengths are in Å.
+    /// The bonds that the file lists, and atoms that are closer than this factor times the sum of their covalent radii
+    /// (Cordero et al. 2008), in Å. Distances never join two atoms of hydrogen, two metals, or an ion: a metal or halogen
+    /// that is alone in its residue.
     Covalent(f64),
-    /// Two spheres of any kind are bonded if they are closer than this length.
+    /// Two spheres of any kind are bonded if they are closer than this length. Bonds of the file are not used.
     Below(f64),
 }
 
@@ -158,14 +159,6 @@ fn check(what: &str, value: f64) -> Result<(), AddError> {
     }
 }
 
-fn no_elements() -> AddError {
-    AddError(
-        "the data does not say which chemical elements its spheres are, from which the lengths of bonds follow; give the \
-         length below which two spheres are bonded (--bond-length L, or bonds = { length = L })"
-            .to_owned(),
-    )
-}
-
 /// The pairs of bonded atoms with the factor by default, also across the borders of a periodic cell.
 pub(crate) fn bonded_pairs(data: &Dataset) -> Result<Vec<[u32; 2]>, AddError> {
     let points: Vec<DVec3> = (0..data.spheres.len()).map(|index| center(&data.spheres, index).0).collect();
@@ -176,34 +169,26 @@ pub(crate) fn bonded_pairs(data: &Dataset) -> Result<Vec<[u32; 2]>, AddError> {
     Ok(within)
 }
 
-/// Finds pairs of spheres that are closer than `factor` times the sum of their covalent radii.
+/// Finds the bonds of the file, and pairs of atoms that are closer than `factor` times the sum of their covalent radii.
 fn covalent_bonds(
     factor: f64,
     data: &Dataset,
     points: &[DVec3],
     notes: &mut Vec<String>,
 ) -> Result<Neighbours, AddError> {
-    let labels = data.labels("species").ok_or_else(no_elements)?;
-    let known: Vec<Option<Covalent>> = labels.names.iter().map(|name| covalent(name)).collect();
-    let largest = known.iter().flatten().map(|known| known.radius).fold(0.0, f64::max);
-    if largest <= 0.0 && !points.is_empty() {
-        return Err(no_elements());
-    }
-    if known.contains(&None) {
-        let names = labels.names.iter().zip(&known);
-        let unknown = names.filter(|(_, known)| known.is_none()).map(|(name, _)| shortened(name));
-        notes.push(format!(
-            "these species have no covalent radius and therefore no bonds: {}; --bond-length L joins all that are closer",
-            listed(unknown, 5)
-        ));
-    }
-    let of = |index: u32| {
-        let species = *labels.indices.get(index as usize)? as usize;
-        known.get(species).copied().flatten()
+    let listed = Neighbours::nearest(data, points, &data.bonds);
+    let is_enough = |atoms: &Atoms<'_>| data.has_all_bonds && !atoms.are_all_known();
+    let atoms = match Atoms::of(data) {
+        None if data.bonds.is_empty() => return Err(no_elements()),
+        Some(atoms) if data.bonds.is_empty() || !is_enough(&atoms) => atoms,
+        _ => return Ok(listed),
     };
-    neighbours(data, points, 2.0 * factor * largest, |a, b, squared| {
-        let Some((a, b)) = of(a).zip(of(b)) else { return false };
-        let most = factor * (a.radius + b.radius);
-        squared > 0.0 && squared < most * most && !(a.is_hydrogen && b.is_hydrogen)
-    })
+    notes.extend(atoms.note());
+    if atoms.are_metals() {
+        notes.push("metals are not joined; --bond-length L joins all that are closer".to_owned());
+    }
+    let found = neighbours(data, points, 2.0 * factor * atoms.largest, |a, b, squared| {
+        atoms.most(a, b).is_some_and(|most| squared > 0.0 && squared < (factor * most).powi(2))
+    })?;
+    Ok(found.joined(listed))
 }

@@ -5,6 +5,7 @@
 //! of colours. [`Additions`] holds the choices.
 
 mod arrows;
+mod atoms;
 mod bonds;
 mod neighbours;
 mod shapes;

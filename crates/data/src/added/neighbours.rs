@@ -1,6 +1,6 @@
 //! Pairs of points that are close together, also across the borders of a periodic cell.
 
-use std::collections::HashMap;
+use std::collections::{HashMap, HashSet};
 
 use glam::{DVec3, I64Vec3};
 
@@ -16,6 +16,41 @@ pub(super) struct Neighbours {
     /// Pairs of a sphere and the image of another or of itself, with the centre of the image. After each pair comes the
     /// same one from the other side.
     pub(super) across: Vec<(u32, u32, DVec3)>,
+}
+
+impl Neighbours {
+    /// Pairs of spheres at any distance, the second of each at the place of its nearest image. Those that are not in the
+    /// data or are in one place are left out.
+    pub(super) fn nearest(data: &Dataset, points: &[DVec3], pairs: &[[u32; 2]]) -> Self {
+        let cell = PeriodicCell::of(data);
+        let mut found = Self::default();
+        for &[a, b] in pairs {
+            let (Some(from), Some(to)) = (points.get(a as usize), points.get(b as usize)) else { continue };
+            if !(from.is_finite() && to.is_finite() && from != to) {
+                continue;
+            }
+            let turns = cell.as_ref().map_or(DVec3::ZERO, |cell| cell.turns_to_nearest(*from, *to));
+            match &cell {
+                Some(cell) if turns != DVec3::ZERO => {
+                    found.across.push((a, b, cell.moved(*to, turns)));
+                    found.across.push((b, a, cell.moved(*from, -turns)));
+                }
+                _ => found.within.push([a.min(b), a.max(b)]),
+            }
+        }
+        found
+    }
+
+    /// Joins two lists, without the pairs that both have.
+    pub(super) fn joined(mut self, other: Self) -> Self {
+        self.within.extend(other.within);
+        self.within.sort_unstable();
+        self.within.dedup();
+        let key = |(a, b, image): &(u32, u32, DVec3)| (*a, *b, image.to_array().map(f64::to_bits));
+        let known: HashSet<_> = self.across.iter().map(key).collect();
+        self.across.extend(other.across.into_iter().filter(|pair| !known.contains(&key(pair))));
+        self
+    }
 }
 
 /// Finds the pairs of spheres at most `reach` apart for which `is_pair` is true. It gets two indices and the squared
@@ -232,6 +267,24 @@ mod tests {
             found_across += across.len();
         }
         assert!(found_across > 1000, "{found_across}");
+    }
+
+    #[test]
+    fn listed_pairs_go_to_the_nearest_image_once() {
+        let mut data = Dataset::new(SphereArray::F64(vec![]));
+        data.cell = Some([[10.0, 0.0, 0.0], [4.5, 10.0, 0.0], [0.0, 0.0, 10.0]]);
+        data.is_periodic = [true, true, false];
+        let points = [[0.5, 0.5, 1.0], [9.0, 0.5, 1.0], [4.0, 9.5, 9.0], [0.5, 0.5, 1.0], [25.0, 0.5, 1.0]];
+        let points = points.map(DVec3::from);
+        let found = Neighbours::nearest(&data, &points, &[[0, 1], [0, 2], [0, 3], [0, 4], [1, 9]]);
+        assert!(found.within.is_empty());
+        let images: Vec<_> = found.across.iter().step_by(2).map(|(a, b, image)| (*a, *b, image.to_array())).collect();
+        assert_eq!(images, [(0, 1, [-1.0, 0.5, 1.0]), (0, 2, [-0.5, -0.5, 9.0]), (0, 4, [5.0, 0.5, 1.0])]);
+        data.spheres = SphereArray::F64(points.map(|p| [p.x, p.y, p.z, 1.0]).to_vec());
+        let near = neighbours(&data, &points, 2.0, |_, _, squared| squared > 0.0).unwrap();
+        assert_eq!(near.across.len(), 4, "also between 1 and 3");
+        let joined = near.joined(found);
+        assert_eq!((joined.across.len(), joined.within.len()), (8, 0));
     }
 
     #[test]

@@ -1,9 +1,13 @@
 //! Collects the atoms of one model of a molecule, as PDB and mmCIF have them.
 
 pub(super) mod element;
+mod links;
+
+pub(super) use links::AtomKey;
 
 use std::collections::{HashMap, HashSet};
 
+use super::bonds;
 use super::dataset::retain;
 use super::elements::{Appearance, UnknownSpecies, appearance};
 use super::labels::{LabelsBuilder, Memo};
@@ -55,6 +59,8 @@ pub(super) struct Atoms {
     /// The letter of the alternate location and the insertion code of the residue, for each atom.
     letters: Vec<[u8; 2]>,
     serial: Vec<f64>,
+    /// Bonds between atoms, in any order.
+    bonds: Vec<[u32; 2]>,
     has_alternates: bool,
     /// Indices of atoms without a symbol whose name means calcium or, in the wrong columns, the alpha carbon.
     doubtful: Vec<usize>,
@@ -178,6 +184,7 @@ impl Atoms {
             labels.retain(&keep);
         }
         self.entity.retain(&keep);
+        self.bonds = bonds::kept(&self.bonds, &keep);
         let atoms = if left_out == 1 { "1 atom is" } else { &format!("{left_out} atoms are") };
         Some(format!(
             "{atoms} left out as alternate {}; the locations with the highest occupancy are kept",
@@ -206,6 +213,7 @@ impl Atoms {
         let unknown = self.species.unknown();
         let mut loaded = Dataset::new(SphereArray::F64(self.spheres));
         loaded.colors = Some(self.colors);
+        loaded.bonds = bonds::ordered(self.bonds);
         loaded.columns = [
             ("species", self.species.labels.into_values()),
             ("name", self.name.into_values()),

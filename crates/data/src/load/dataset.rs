@@ -2,6 +2,7 @@
 
 use glam::DVec3;
 
+use super::bonds;
 use super::elements::UnknownSpecies;
 use super::spacing;
 use pinhole::image::color::LinearRgb;
@@ -31,6 +32,10 @@ pub struct Dataset {
     /// Is true if the cell is that of a crystal whose symmetry is not applied, so that the spheres are only a part of what
     /// is in it. Distances in selections do not reach across its borders then.
     pub is_part_of_crystal: bool,
+    /// Bonds that the file lists: pairs of indices of spheres, the smaller index first, sorted, and each pair once.
+    pub bonds: Vec<[u32; 2]>,
+    /// Is true if the file lists all of its bonds, so that distances add none unless all spheres are atoms of elements.
+    pub has_all_bonds: bool,
     /// Number of frames in the file; `None` if the file was not read to its end.
     pub frames: Option<usize>,
     /// Notes for the user that are not errors, one line each and without the file's name.
@@ -110,6 +115,8 @@ impl Dataset {
             cell_origin: [0.0; 3],
             is_periodic: [true; 3],
             is_part_of_crystal: false,
+            bonds: Vec::new(),
+            has_all_bonds: false,
             frames: None,
             notes: Vec::new(),
             unknown: None,
@@ -162,7 +169,7 @@ impl Dataset {
         self.unknown = left;
     }
 
-    /// Leaves out the spheres for which `is_kept` is false, with their colours, opacities and other values. Spheres
+    /// Leaves out the spheres for which `is_kept` is false, with their colours, opacities, bonds and other values. Spheres
     /// beyond the end of `is_kept` stay. If any is left out, a new column `index` has the former indices, unless the data
     /// has a column of this name.
     pub fn keep(&mut self, is_kept: &[bool]) {
@@ -186,6 +193,7 @@ impl Dataset {
                 ColumnValues::Numbers(numbers) => retain(numbers, is_kept),
             }
         }
+        self.bonds = bonds::kept(&self.bonds, is_kept);
         // A note about species that are not in the picture would be useless.
         let left: Option<Vec<String>> = self.labels("species").map(|labels| labels.names.clone());
         if let Some(left) = left {

@@ -98,15 +98,41 @@ const COVALENT: [u16; 96] = [
 pub(crate) struct Covalent {
     /// The covalent radius in Å.
     pub(crate) radius: f64,
-    pub(crate) is_hydrogen: bool,
+    pub(crate) family: Family,
 }
 
-/// Returns the covalent radius of a species, and whether it is hydrogen; `None` if the species is not an element, or an
+/// The families of elements that form bonds in different ways.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) enum Family {
+    Hydrogen,
+    Oxygen,
+    Halogen,
+    Metal,
+    Other,
+}
+
+/// Returns true for the symbols of metals.
+pub(crate) fn is_metal(symbol: &str) -> bool {
+    const OTHERS: [&str; 26] = [
+        "H", "D", "T", "HE", "B", "C", "N", "O", "F", "NE", "SI", "P", "S", "CL", "AR", "GE", "AS", "SE", "BR", "KR",
+        "SB", "TE", "I", "XE", "AT", "RN",
+    ];
+    !OTHERS.contains(&symbol.to_ascii_uppercase().as_str())
+}
+
+/// Returns the covalent radius of a species, and its family; `None` if the species is not an element, or an
 /// element without a covalent radius. The species is written as for its radius and colour.
 pub(crate) fn covalent(species: &str) -> Option<Covalent> {
-    let number = element(species)?.atomic_number() as usize;
-    let radius = 0.01 * f64::from(*COVALENT.get(number.checked_sub(1)?)?);
-    Some(Covalent { radius, is_hydrogen: number == 1 })
+    let element = element(species)?;
+    let radius = 0.01 * f64::from(*COVALENT.get((element.atomic_number() as usize).checked_sub(1)?)?);
+    let family = match element {
+        Element::H => Family::Hydrogen,
+        Element::O => Family::Oxygen,
+        Element::F | Element::Cl | Element::Br | Element::I | Element::At => Family::Halogen,
+        element if is_metal(element.symbol()) => Family::Metal,
+        _ => Family::Other,
+    };
+    Some(Covalent { radius, family })
 }
 
 /// Species that are not chemical elements and lack a colour or a radius for that reason.
@@ -174,8 +200,8 @@ mod tests {
         ] {
             assert!((covalent(species).unwrap().radius - radius).abs() < 1e-12, "{species}");
         }
-        assert!(covalent("D").unwrap().is_hydrogen);
-        assert!(!covalent("He").unwrap().is_hydrogen);
+        let families = ["D", "He", "o", "Cl-", "Fe2+"].map(|species| covalent(species).unwrap().family);
+        assert_eq!(families, [Family::Hydrogen, Family::Other, Family::Oxygen, Family::Halogen, Family::Metal]);
         for species in ["Bk", "bead", "", "0", "119"] {
             assert_eq!(covalent(species), None, "{species}");
         }

@@ -90,6 +90,8 @@ pub(super) trait FrameReader: fmt::Debug + Send + Sync {
 pub(super) struct FrameIndex {
     /// Range of bytes before the first frame that every frame needs.
     pub(super) head: Range<u64>,
+    /// Lines after the last frame that every frame needs.
+    pub(super) tail: FrameSpan,
     pub(super) frames: Vec<FrameSpan>,
     /// Whether the file was searched to its end.
     pub(super) is_whole: bool,
@@ -211,7 +213,7 @@ impl Options {
     }
 }
 
-#[derive(Clone, Debug, PartialEq, Eq)]
+#[derive(Clone, Debug, Default, PartialEq, Eq)]
 pub(super) struct FrameSpan {
     pub(super) bytes: Range<u64>,
     pub(super) lines_before: usize,
@@ -222,6 +224,9 @@ pub(super) struct FrameText<'a> {
     pub(super) head: &'a [u8],
     pub(super) text: &'a [u8],
     pub(super) lines_before: usize,
+    pub(super) tail: &'a [u8],
+    /// Number of lines before the tail.
+    pub(super) lines_before_tail: usize,
     /// Index of the frame, from 0.
     pub(super) index: usize,
 }
@@ -263,8 +268,15 @@ impl Frames {
             (Self::Lines { read, .. }, _) => {
                 let head = bytes(source, &index.head)?;
                 let text = bytes(source, &span.bytes)?;
-                let lines_before = span.lines_before;
-                let text = FrameText { head: &head, text: &text, lines_before, index: wanted };
+                let tail = bytes(source, &index.tail.bytes)?;
+                let text = FrameText {
+                    head: &head,
+                    text: &text,
+                    lines_before: span.lines_before,
+                    tail: &tail,
+                    lines_before_tail: index.tail.lines_before,
+                    index: wanted,
+                };
                 read(&text, options)?
             }
             (_, Some(reader)) => reader.read(source, wanted, span, options)?,

@@ -14,6 +14,7 @@
 //! ```
 
 mod atoms;
+mod bonds;
 mod cone_kind;
 mod cones;
 mod dataset;
@@ -35,7 +36,7 @@ pub(crate) use atoms::element::Residue;
 pub use cone_kind::ConeKind;
 pub use cones::ConeSet;
 pub use dataset::{Column, ColumnValues, Dataset, Labels};
-pub(crate) use elements::{Covalent, covalent, element_symbol};
+pub(crate) use elements::{Covalent, Family, covalent, element_symbol, is_metal};
 pub use error::{LoadError, LoadErrorKind, Place};
 pub use file_rows::FileRows;
 pub use format::{Format, Options};

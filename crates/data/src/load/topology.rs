@@ -49,7 +49,7 @@ impl Topology {
         )))
     }
 
-    /// Returns the spheres of a frame. Radii, colours and columns are those of the topology, but for its velocities,
+    /// Returns the spheres of a frame. Radii, colours, bonds and columns are those of the topology, but for its velocities,
     /// which belong to another frame. Positions, cell and further columns are those of the frame.
     pub(super) fn join(&self, frame: usize, positions: Positions) -> Result<Dataset, LoadError> {
         let Positions { centers, cell, columns } = positions;
@@ -65,6 +65,8 @@ impl Topology {
         loaded.columns = self.loaded.columns.iter().filter(stays).cloned().collect();
         loaded.columns.extend(columns);
         loaded.cell = cell;
+        loaded.bonds.clone_from(&self.loaded.bonds);
+        loaded.has_all_bonds = self.loaded.has_all_bonds;
         let named = |note: &String| format!("the topology {}: {note}", self.path.display());
         loaded.notes = self.loaded.notes.iter().map(named).collect();
         loaded.unknown.clone_from(&self.loaded.unknown);

@@ -6,10 +6,10 @@ use super::data::{Data, Values};
 use super::error::SelectError;
 use super::residues::{
     CARBON, DNA, ION, LIPID, NUCLEIC, POLYMER, PROTEIN, RNA, SUGAR, WATER, bit_of_atom, is_backbone,
-    is_hydrogen_of_backbone, is_metal, kind_of, kind_with_atoms, names_of_class,
+    is_hydrogen_of_backbone, kind_of, kind_with_atoms, names_of_class,
 };
 use super::tree::Word;
-use crate::load::{Labels, covalent, element_symbol};
+use crate::load::{Family, Labels, covalent, element_symbol, is_metal};
 
 impl<'a> Data<'a> {
     /// Returns the spheres of a class.
@@ -183,7 +183,7 @@ impl<'a> Data<'a> {
 }
 
 fn is_hydrogen(species: &str) -> bool {
-    covalent(species).is_some_and(|known| known.is_hydrogen)
+    covalent(species).is_some_and(|known| known.family == Family::Hydrogen)
 }
 
 fn chosen(labels: &Labels, is_in: impl Fn(&str) -> bool) -> Vec<bool> {

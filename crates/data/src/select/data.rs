@@ -258,7 +258,7 @@ impl<'a> Data<'a> {
         if let Some(graph) = &self.graph {
             return Ok(Rc::clone(graph));
         }
-        if self.loaded.labels("species").is_none() {
+        if self.loaded.labels("species").is_none() && self.loaded.bonds.is_empty() {
             let (what, problem) = (shortened(&word.text), self.no_elements());
             return Err(self.error(word.at, format!("{what} needs bonds, which are found by elements: {problem}")));
         }

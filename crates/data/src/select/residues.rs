@@ -119,12 +119,3 @@ pub(super) fn is_hydrogen_of_backbone(name: &str, kind: u16) -> bool {
     (kind & PROTEIN != 0 && HYDROGEN_OF_BACKBONE.contains(&name.as_str()))
         || (kind & NUCLEIC != 0 && HYDROGEN_OF_NUCLEIC.contains(&name.as_str()))
 }
-
-/// Returns true for the symbols of metals.
-pub(super) fn is_metal(symbol: &str) -> bool {
-    const OTHERS: [&str; 26] = [
-        "H", "D", "T", "HE", "B", "C", "N", "O", "F", "NE", "SI", "P", "S", "CL", "AR", "GE", "AS", "SE", "BR", "KR",
-        "SB", "TE", "I", "XE", "AT", "RN",
-    ];
-    !OTHERS.contains(&symbol.to_ascii_uppercase().as_str())
-}

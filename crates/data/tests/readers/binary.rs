@@ -307,7 +307,7 @@ fn gsd_frames_inherit_from_the_first() {
         assert_eq!(names(&first), ["species", "image.x", "image.y", "image.z", "energy"]);
         let cell = [[10.0, 0.0, 0.0], [10.0, 20.0, 0.0], [7.5, 3.75, 30.0]];
         assert_eq!((first.frames, first.cell, &first.colors), (Some(3), Some(cell), &None));
-        let unused = "these parts of the file are not used: bonds, log/temperature, particles/orientation";
+        let unused = "these parts of the file are not used: log/temperature, particles/orientation";
         assert_eq!(first.notes, [unused]);
         let species = first.labels("species").unwrap();
         assert_eq!((species.names.as_slice(), &*species.indices), (&["A".into(), "poly".into()][..], &[1, 0, 1][..]));
@@ -315,11 +315,35 @@ fn gsd_frames_inherit_from_the_first() {
         let second = gsd_frame(&bytes, 1);
         assert_eq!(spheres(&second)[2], [106.0, 107.0, 108.0, 2.0]);
         assert_eq!(first.cell_origin, [-13.75, -11.875, -15.0]);
+        assert_eq!([&first, &second].map(|frame| (&*frame.bonds, frame.has_all_bonds)), [(&[[0, 1]][..], true); 2]);
         assert_eq!((second.cell, second.column("energy")), (Some(cell), first.column("energy")));
         // A frame with another number of particles has the defaults.
         let third = gsd_frame(&bytes, 2);
         assert_eq!(spheres(&third), [[200.0, 201.0, 202.0, 0.5], [203.0, 204.0, 205.0, 0.5]]);
+        assert!(third.bonds.is_empty());
         assert_eq!((names(&third), &*third.labels("species").unwrap().indices), (vec!["species"], &[0, 0][..]));
+    }
+}
+
+#[test]
+fn bonds_of_gsd() {
+    let frame = |columns, ends: Vec<u32>| {
+        let mut all = chunks();
+        all.retain(|chunk| chunk.name != "bonds/group");
+        let second = all.iter().position(|chunk| chunk.frame == 1).unwrap();
+        all.insert(second, chunk(1, "bonds/N", 1, Data::U32(vec![0])));
+        all.insert(second, chunk(0, "bonds/group", columns, Data::U32(ends)));
+        gsd::file(2, &all)
+    };
+    let good = frame(2, vec![2, 1, 0, 2, 1, 2]);
+    assert_eq!(gsd_frame(&good, 0).bonds, [[0, 2], [1, 2]]);
+    assert!(gsd_frame(&good, 1).bonds.is_empty());
+    for (columns, ends, said) in [
+        (2, vec![0, 1, 1, 3], "has the particle 3 in bond 1, but there are 3 particles"),
+        (3, vec![0, 1, 2], "has 3 numbers for each bond, but must have those of two particles"),
+    ] {
+        let message = refused(read("gsd", &frame(columns, ends), &Options::default()));
+        assert!(message.ends_with(&format!("frame 0: the chunk bonds/group {said}")), "{message}");
     }
 }
 

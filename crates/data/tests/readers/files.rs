@@ -100,6 +100,9 @@ fn written(loaded: &Dataset) -> String {
         }
         lines.push(line);
     }
+    if !loaded.bonds.is_empty() {
+        lines.push(format!("bonds {:?}{}", loaded.bonds, if loaded.has_all_bonds { ", which are all" } else { "" }));
+    }
     if let Some(cell) = loaded.cell {
         // Cosines may differ in the last digit from one system to another.
         let cell = cell.map(|edge| edge.map(|x| (x * 1e9).round() / 1e9 + 0.0));

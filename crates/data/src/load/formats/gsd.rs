@@ -9,6 +9,7 @@ pub(super) use index::starts;
 
 use std::collections::BTreeSet;
 
+use crate::load::bonds::ordered;
 use crate::load::dataset::{Column, ColumnValues, Dataset, Labels};
 use crate::load::elements::appearance;
 use crate::load::error::LoadError;
@@ -33,8 +34,20 @@ const QUANTITIES: [(&str, &str, u32); 6] = [
     ("particles/diameter", "diameter", 1),
 ];
 
-/// Chunks that describe the others.
-const OTHERS: [&str; 4] = ["particles/N", "particles/position", "particles/types", "particles/typeid"];
+/// Chunks that describe the others, or are read by themselves.
+const OTHERS: [&str; 8] = [
+    "particles/N",
+    "particles/position",
+    "particles/types",
+    "particles/typeid",
+    "bonds/N",
+    "bonds/types",
+    "bonds/typeid",
+    BONDS,
+];
+
+/// The chunk with the particles of bonds.
+const BONDS: &str = "bonds/group";
 
 const LOGGED: &str = "log/particles/";
 
@@ -146,6 +159,7 @@ impl Frame<'_> {
         others.append(&mut loaded.columns);
         loaded.columns = others;
         loaded.notes.extend(notes);
+        (loaded.bonds, loaded.has_all_bonds) = (self.bonds()?, true);
         loaded.cell = self.cell()?;
         // The box of HOOMD-blue is centred at the origin.
         if let Some([a, b, c]) = loaded.cell {
@@ -263,7 +277,7 @@ impl Frame<'_> {
                 .strip_prefix(LOGGED)
                 .filter(|_| chunk.rows == self.count && (1..=MOST_COMPONENTS).contains(&chunk.columns) && is_for_all);
             let Some(quantity) = quantity else {
-                // Nothing about bonds is used, so a note names only the kind.
+                // Nothing about angles is used, so a note names only the kind.
                 let is_bonded = !name.starts_with("particles/") && !name.starts_with("log/");
                 let part = name.split('/').next().filter(|_| is_bonded).unwrap_or(name);
                 unused.insert(shown(part.as_bytes()));
@@ -278,6 +292,34 @@ impl Frame<'_> {
             columns.extend(self.columns(chunk, name, &column)?);
         }
         Ok(unused)
+    }
+
+    /// The bonds between particles.
+    fn bonds(&mut self) -> Result<Vec<[u32; 2]>, LoadError> {
+        if let Some(chunk) = self.index.chunk(self.frame, "bonds/N")
+            && self.numbers(chunk, "bonds/N")?.iter().all(|count| *count <= 0.0)
+        {
+            return Ok(Vec::new());
+        }
+        let Some(chunk) = self.particle_chunk(BONDS)? else { return Ok(Vec::new()) };
+        let frame = self.frame;
+        let wrong = |what: String| {
+            let message = format!("frame {frame}: the chunk {BONDS} {what}");
+            Err(LoadError::byte(chunk.location, message))
+        };
+        if chunk.columns != 2 {
+            return wrong(format!("has {} numbers for each bond, but must have those of two particles", chunk.columns));
+        }
+        let ends = self.numbers(chunk, BONDS)?;
+        if let Some(place) = ends.iter().position(|end| !(0.0..self.count as f64).contains(end)) {
+            let count = self.count;
+            return wrong(format!(
+                "has the particle {} in bond {}, but there are {count} particles",
+                ends[place],
+                place / 2
+            ));
+        }
+        Ok(ordered(ends.chunks_exact(2).map(|ends| [ends[0] as u32, ends[1] as u32])))
     }
 
     /// The edges of the periodic box, if it has a volume.

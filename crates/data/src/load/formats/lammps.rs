@@ -5,6 +5,7 @@
 
 pub(super) mod data;
 pub(super) mod dump;
+mod types;
 
 use crate::load::dataset::ColumnValues;
 use crate::load::error::LoadError;

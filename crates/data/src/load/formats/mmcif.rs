@@ -5,8 +5,11 @@
 //! either format gives the same result, but for the numbers of its atoms. Where the authors' names and numbers (`auth_…`) differ from those of the
 //! dictionary (`label_…`), the authors' count. Lengths are taken as they are, in Å.
 //!
+//! Bonds are the connections of `_struct_conn` that are covalent or those of metals, in the block of the atoms.
+//!
 //! Positions that are fractions of the cell are those of the atoms that the file lists. Symmetry is not applied.
 
+mod links;
 mod tokens;
 
 use std::collections::HashSet;
@@ -72,14 +75,25 @@ impl FrameReader for MmCif {
         let lines = lines_of_rows.saturating_sub(count_lines(&before));
         let mut header = Header::before(without_byte_order_mark(&before), lines)?;
         let end = frames.get(last + 1).map_or(self.end, |next| next.bytes.start);
-        if header.cell()?.is_none() && self.is_whole {
+        let after = bytes(source, &(frames[last].bytes.end..end))?;
+        let mut links = links::links(links::last_block(&before), lines_of_rows)?;
+        if self.is_whole && (header.cell()?.is_none() || links::are_in(&after)) {
             let lines = frames[last].lines_before + count_lines(&bytes(source, &frames[last].bytes)?);
-            header.add_after(&bytes(source, &(frames[last].bytes.end..end))?, lines)?;
+            header.add_after(&after, lines)?;
+            let block = links::first_block(&after);
+            links.extend(links::links(block, lines + count_lines(block))?);
         }
         let cell = header.cell()?;
         let columns = header.columns.ok_or_else(no_atoms)?;
         let text = bytes(source, rows)?;
-        let mut loaded = read_rows(&text, *lines_before, &columns, cell)?;
+        let mut atoms = read_rows(&text, *lines_before, &columns, cell)?;
+        let missing = atoms.bond_by_name(&links);
+        let mut loaded = atoms.into_loaded();
+        if missing > 0 {
+            loaded
+                .notes
+                .push(format!("bonds of _struct_conn are left out, because their atoms are not there: {missing}"));
+        }
         loaded.cell = cell;
         loaded.is_part_of_crystal = !columns.is_fractional;
         if columns.is_fractional {
@@ -107,7 +121,7 @@ fn read_rows(
     lines_before: usize,
     columns: &Columns,
     cell: Option<[[f64; 3]; 3]>,
-) -> Result<Dataset, LoadError> {
+) -> Result<Atoms, LoadError> {
     let mut tokens = Tokens::new(text, lines_before);
     // Rows are hardly ever shorter than this.
     let mut atoms = Atoms::with_capacity(text.len() / 80);
@@ -119,7 +133,7 @@ fn read_rows(
             let place = tokens.place();
             let Some(Token::Value(value)) = tokens.next_at(place)? else {
                 if column == 0 {
-                    return Ok(atoms.into_loaded());
+                    return Ok(atoms);
                 }
                 return Err(cut_row(row, column, columns.count));
             };

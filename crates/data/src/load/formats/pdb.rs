@@ -2,7 +2,7 @@
 //!
 //! A PDB file is text in fixed columns. The records ATOM and HETATM become spheres with the van der Waals
 //! radii and the colours of their elements; CRYST1 becomes the periodic cell; MODEL and ENDMDL enclose a
-//! frame; every other record is skipped. Lengths are taken as they are, in Å.
+//! frame; CONECT lists bonds, which belong to every frame if they follow the last; every other record is skipped. Lengths are taken as they are, in Å.
 //!
 //! The columns are `species`, `name`, `residue`, `chain`, `residue_number`, `b_factor`, `occupancy` and
 //! `record`. One location of an atom with alternate locations is kept.
@@ -10,6 +10,7 @@
 //! Many programs deviate from the format, so this reader also accepts residue names of four characters,
 //! residue numbers in hybrid-36, and lines that end after the coordinates.
 
+mod links;
 mod record;
 
 use std::io;
@@ -19,6 +20,7 @@ use crate::load::atoms::{Atom, Atoms};
 use crate::load::error::{LoadError, Place};
 use crate::load::format::{FrameIndex, FrameSpan, FrameText, Frames, Options, read_from_memory};
 use crate::load::source::LineReader;
+use links::Links;
 use pinhole::internals::text::without_byte_order_mark;
 use record::{Kind, Lines, Record, cell_of, hybrid36};
 
@@ -49,9 +51,14 @@ fn find(lines: &mut LineReader<'_>, _: Option<usize>) -> io::Result<FrameIndex> 
         if let Err(problem) = reader.take(lines_before + 1, text) {
             found.problem = Some(problem);
             found.frames.pop();
+            found.tail = FrameSpan::default();
             return Ok(found);
         }
+        if Kind::of(text) == Kind::Conect && reader.open.is_none() && found.tail.bytes.end == 0 {
+            found.tail = FrameSpan { bytes: offset..u64::MAX, lines_before };
+        }
         if reader.models > models {
+            found.tail = FrameSpan::default();
             match found.frames.last_mut() {
                 Some(before) => before.bytes.end = offset,
                 None => found.head = 0..offset,
@@ -60,9 +67,16 @@ fn find(lines: &mut LineReader<'_>, _: Option<usize>) -> io::Result<FrameIndex> 
         }
     }
     match found.frames.last_mut() {
+        Some(last) if found.tail.bytes.end > 0 => {
+            last.bytes.end = found.tail.bytes.start;
+            found.tail.bytes.end = lines.offset;
+        }
         Some(last) => last.bytes.end = lines.offset,
         // A file without models is one frame.
-        None => found.frames.push(FrameSpan { bytes: 0..lines.offset, lines_before: 0 }),
+        None => {
+            found.frames.push(FrameSpan { bytes: 0..lines.offset, lines_before: 0 });
+            found.tail = FrameSpan::default();
+        }
     }
     if reader.first_atom.is_none() {
         found.frames.clear();
@@ -80,6 +94,9 @@ fn read_frame(frame: &FrameText<'_>, _: &Options) -> Result<Dataset, LoadError> 
     let text = Lines::new(text).map(|(line, text)| (frame.lines_before + line, text));
     for (line, text) in Lines::new(head).chain(text) {
         reader.take(line, text)?;
+    }
+    for (line, text) in Lines::new(frame.tail) {
+        reader.take(frame.lines_before_tail + line, text)?;
     }
     reader.finish(frame.index)
 }
@@ -116,6 +133,7 @@ struct Reader {
     /// True if the space group of the cell is another than P 1.
     has_symmetry: bool,
     atoms: Atoms,
+    links: Links,
 }
 
 impl Reader {
@@ -139,6 +157,11 @@ impl Reader {
                 } else if Kind::of(text) == Kind::Endmdl {
                     self.open = None;
                 }
+                Ok(())
+            }
+            // While frames are found, no frame is read.
+            Kind::Conect if self.frame != usize::MAX => {
+                self.links.take(line, text);
                 Ok(())
             }
             Kind::AtomSite if self.first_atom.is_none() => Err(mmcif()),
@@ -210,7 +233,10 @@ impl Reader {
             );
             return Err(LoadError::line(self.wanted, message));
         }
-        let mut loaded = self.atoms.into_loaded();
+        let Self { mut atoms, links, .. } = self;
+        let notes = links.add_to(&mut atoms);
+        let mut loaded = atoms.into_loaded();
+        loaded.notes.extend(notes);
         loaded.cell = self.cell;
         loaded.is_part_of_crystal = self.has_symmetry;
         if let Some(line) = self.after_end {

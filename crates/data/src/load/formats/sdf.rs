@@ -3,14 +3,14 @@
 //!
 //! A record has three lines, the first of which is the name of the molecule, a line with counts, atoms, bonds,
 //! properties, and perhaps items of data; `$$$$` ends it. Lengths are in Å. The columns are `species`, `charge`, and
-//! `molecule` if the molecule has a name. Bonds and data are counted, but not used.
+//! `molecule` if the molecule has a name. Items of data are counted, but not used.
 
 mod molecule;
 mod v3000;
 
 use std::io;
 
-use self::molecule::{Molecule, NumberedLines};
+pub(super) use self::molecule::{Molecule, NumberedLines};
 use crate::load::dataset::Dataset;
 use crate::load::error::{LoadError, Place};
 use crate::load::format::{FrameIndex, FrameSpan, FrameText, Frames, Options};
@@ -106,9 +106,14 @@ impl Molecule {
             self.take_v2000(lines.line, text)?;
         }
         for found in 0..bonds {
-            lines.next().filter(|text| !is_property(text)).ok_or_else(|| ends(found, "bonds", bonds))?;
+            let text = lines.next().filter(|text| !is_property(text)).ok_or_else(|| ends(found, "bonds", bonds))?;
+            let (line, pair) = (lines.line, whole(text, 0, 3).zip(whole(text, 3, 3)));
+            let (a, b) = pair.ok_or_else(|| {
+                let place = Place::Columns { line, first: 1, last: 6 };
+                LoadError::at(place, "a bond begins with the numbers of two atoms, in three columns each")
+            })?;
+            self.bonds.push((line, [a.into(), b.into()]));
         }
-        self.bonds = bonds;
         // Lists of atoms and texts for drawings, which old programs wrote.
         let (lists, texts) = (count(6, "").unwrap_or(0), count(15, "").unwrap_or(0));
         for _ in 0..lists.saturating_add(texts.saturating_mul(2)) {

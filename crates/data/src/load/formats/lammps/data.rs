@@ -3,17 +3,15 @@
 
 use std::collections::HashMap;
 
-use mendeleev::Element;
-
+use super::types::{Types, name_types};
 use super::{Cell, by_id, too_few_atoms, wrong_text};
+use crate::load::bonds::{Numbered, ordered};
 use crate::load::dataset::{ColumnValues, Dataset};
-use crate::load::elements::appearance;
 use crate::load::error::LoadError;
 use crate::load::format::Options;
-use crate::load::labels::LabelsBuilder;
 use crate::load::numbers::number;
 use crate::load::rows::{self, Field, Kind, Lines, Rows, Values};
-use crate::load::table::{Table, TableColumn};
+use crate::load::table::Table;
 use pinhole::internals::text::{shortened, without_byte_order_mark};
 
 /// Whether one of the first lines declares a number of atoms.
@@ -27,7 +25,8 @@ pub(crate) fn read(bytes: &[u8], options: &Options) -> Result<Dataset, LoadError
     // The first line is always a comment.
     file.next();
     let (mut count, mut ends, mut tilt) = (None, [None; 3], [0.0; 3]);
-    let (mut atoms, mut velocities, mut types) = (None, None, Types::default());
+    let (mut atoms, mut velocities, mut bonds, mut types) = (None, None, None, Types::default());
+    let (mut bond_count, mut counted) = (None, None);
     let mut lines_of_sections = HashMap::new();
     while let Some(text) = file.next() {
         let line = file.line;
@@ -37,15 +36,18 @@ pub(crate) fn read(bytes: &[u8], options: &Options) -> Result<Dataset, LoadError
         }
         let invalid = || wrong_text(line, content, "cannot be read");
         if !is_section(content) {
-            if atoms.is_some() {
-                let (line_of_count, declared) = count.unwrap_or_default();
-                let what =
-                    format!("stands where a section must begin; {declared} atoms are declared on line {line_of_count}");
+            if let Some((what, line_of_count, declared)) = counted {
+                let what = format!(
+                    "stands where a section must begin; {declared} {what} are declared on line {line_of_count}"
+                );
                 return Err(wrong_text(line, content, &what));
             }
             if let Some(atoms) = count_of(content, b"atoms") {
                 let invalid = |text: &[u8]| wrong_text(line, text, "is not a valid number of atoms");
                 count = Some((line, atoms.map_err(invalid)?));
+            } else if let Some(bonds) = count_of(content, b"bonds") {
+                let invalid = |text: &[u8]| wrong_text(line, text, "is not a valid number of bonds");
+                bond_count = Some((line, bonds.map_err(invalid)?));
             } else if let Some(axis) =
                 ["xlo xhi", "ylo yhi", "zlo zhi"].iter().position(|n| content.ends_with(n.as_bytes()))
             {
@@ -56,8 +58,8 @@ pub(crate) fn read(bytes: &[u8], options: &Options) -> Result<Dataset, LoadError
             }
             continue;
         }
-        // These sections have a line for each atom, so a second section contradicts the first.
-        if let Some(section) = ["Atoms", "Velocities"].into_iter().find(|name| content == name.as_bytes())
+        // These sections have a declared number of lines, so a second section contradicts the first.
+        if let Some(section) = ["Atoms", "Velocities", "Bonds"].into_iter().find(|name| content == name.as_bytes())
             && let Some(first_line) = lines_of_sections.insert(section, line)
         {
             let message = format!(
@@ -75,9 +77,19 @@ pub(crate) fn read(bytes: &[u8], options: &Options) -> Result<Dataset, LoadError
         match content {
             b"Atoms" => {
                 let (rows, style) = (rows()?, comment_of(text));
+                counted = count.map(|(line, declared)| ("atoms", line, declared));
                 atoms = Some((rows, fields_of(rows, style.as_deref(), &options.columns)?));
             }
             b"Velocities" => velocities = Some(rows()?),
+            b"Bonds" => {
+                let (line_of_count, declared) = bond_count.unwrap_or_else(|| (line, file.section_lines()));
+                let too_few = |found| {
+                    let message = format!("{declared} bonds are declared, but the file ends after {found}");
+                    LoadError::line(line_of_count, message)
+                };
+                bonds = Some(file.take_rows(declared).map_err(too_few)?);
+                counted = Some(("bonds", line_of_count, declared));
+            }
             b"Masses" => file.each_pair(|line, name, value| {
                 let mass = number(value).filter(|mass| mass.is_finite());
                 let mass = mass.ok_or_else(|| {
@@ -102,6 +114,7 @@ pub(crate) fn read(bytes: &[u8], options: &Options) -> Result<Dataset, LoadError
     let mut table = Table { columns: rows.read(&fields)? };
     let mut notes = Vec::from_iter(name_types(&mut table, &types));
     let order = by_id(&mut table);
+    let bonds = bonds.map(|rows| bonds_of(&table, rows)).transpose()?;
     if let Some(rows) = velocities {
         notes.extend(add_velocities(&mut table, rows)?);
     }
@@ -115,7 +128,27 @@ pub(crate) fn read(bytes: &[u8], options: &Options) -> Result<Dataset, LoadError
         (loaded.cell, loaded.cell_origin) = (Some(cell.edges), cell.origin);
     }
     loaded.notes.extend(notes);
+    (loaded.bonds, loaded.has_all_bonds) = (bonds.unwrap_or_default(), true);
     Ok(loaded)
+}
+
+fn numbers<'a>(table: &'a Table, name: &str) -> Option<&'a [f64]> {
+    let column = table.columns.iter().find(|column| column.name == name)?;
+    match &column.values {
+        ColumnValues::Numbers(numbers) => Some(numbers),
+        ColumnValues::Labels(_) => None,
+    }
+}
+
+/// Reads bonds, which have an id, a type and the ids of two atoms.
+fn bonds_of(table: &Table, rows: Rows<'_>) -> Result<Vec<[u32; 2]>, LoadError> {
+    let fields = [("id", Kind::Number), ("type", Kind::Text), ("atom1", Kind::Number), ("atom2", Kind::Number)];
+    let columns = Table { columns: rows.read(&fields.map(|(name, kind)| Field::new(name, kind)))? };
+    let [first, second] = ["atom1", "atom2"].map(|name| numbers(&columns, name).unwrap_or_default());
+    let ids = Numbered::new(numbers(table, "id").unwrap_or_default().iter().map(|id| Some(*id as i64)));
+    let pair = |(row, (a, b)): (usize, (&f64, &f64))| ids.pair(rows.lines_before + row + 1, [*a as i64, *b as i64]);
+    let pairs: Vec<_> = first.iter().zip(second).enumerate().map(pair).collect::<Result<_, _>>()?;
+    Ok(ordered(pairs))
 }
 
 /// Adds the velocities of the atoms with the same ids. Returns a note if there are velocities of other ids.
@@ -124,14 +157,7 @@ fn add_velocities(table: &mut Table, rows: Rows<'_>) -> Result<Option<String>, L
     let rows = Rows { may_be_longer: true, ..rows };
     let mut velocities = Table { columns: rows.read(&fields)? };
     by_id(&mut velocities);
-    let ids = |table: &Table| {
-        let column = table.columns.iter().find(|column| column.name == "id")?;
-        match &column.values {
-            ColumnValues::Numbers(ids) => Some(ids.clone()),
-            ColumnValues::Labels(_) => None,
-        }
-    };
-    if ids(table) != ids(&velocities) {
+    if numbers(table, "id") != numbers(&velocities, "id") {
         return Ok(Some("the velocities are not used, because their ids are not those of the atoms".to_owned()));
     }
     table.columns.extend(velocities.columns.drain(1..));
@@ -161,6 +187,11 @@ impl<'a> File<'a> {
         while self.lines.clone().next().is_some_and(|line| without_comment(line).is_empty()) {
             self.next();
         }
+    }
+
+    fn section_lines(&self) -> usize {
+        let lines = self.lines.clone().map(without_comment);
+        lines.take_while(|line| !line.is_empty() && !is_section(line)).count()
     }
 
     fn skip_section(&mut self) {
@@ -327,99 +358,4 @@ fn fields_of(rows: Rows<'_>, style: Option<&str>, given: &[String]) -> Result<Ve
         Field::new(name, if is_text { Kind::Text } else { Kind::Number })
     };
     Ok(names.iter().map(String::as_str).chain(images.iter().copied()).map(field).collect())
-}
-
-/// The descriptions of types in a data file. A type is a number, as text, or a label.
-#[derive(Debug, Default)]
-struct Types {
-    /// The mass of each type, by its number or label. The first of several masses counts.
-    masses: Vec<(String, f64)>,
-    /// The label of each number.
-    labels: HashMap<String, String>,
-}
-
-impl Types {
-    fn add_mass(&mut self, name: String, mass: f64) {
-        self.masses.push((name, mass));
-    }
-
-    fn add_label(&mut self, number: String, label: String) {
-        self.labels.entry(number).or_insert(label);
-    }
-
-    fn label_of<'a>(&'a self, name: &'a str) -> &'a str {
-        self.labels.get(name).map_or(name, String::as_str)
-    }
-
-    /// The symbol of each type, by its label or else by its mass.
-    fn symbols_of(&self, names: &[String]) -> Vec<Option<String>> {
-        // The index of a mass, by the number or label in the file and by the label of the number.
-        let mut places = HashMap::new();
-        for (place, (name, _)) in self.masses.iter().enumerate() {
-            for name in [name, self.label_of(name)] {
-                places.entry(name).or_insert(place);
-            }
-        }
-        // If all masses are 1, they are in units of the simulation and name no elements.
-        let has_masses = self.masses.iter().any(|(_, mass)| (mass - 1.0).abs() >= 1e-9);
-        let symbol = |name: &String| {
-            let label = self.label_of(name);
-            if label.parse::<f64>().is_err() && appearance(label).is_element {
-                return Some(label.to_owned());
-            }
-            let place = [name, label].into_iter().filter_map(|name| places.get(name)).min();
-            let (_, mass) = self.masses[*place.filter(|_| has_masses)?];
-            let distance = |element: &Element| (f64::from(element.atomic_weight()) - mass).abs();
-            let nearest = Element::list().iter().min_by(|a, b| distance(a).total_cmp(&distance(b)))?;
-            // Programs round masses to one digit after the point.
-            (distance(nearest) < 0.06).then(|| nearest.symbol().to_owned())
-        };
-        names.iter().map(symbol).collect()
-    }
-}
-
-/// Gives the types their labels, and the atoms the elements that labels or masses identify. Returns a note.
-fn name_types(table: &mut Table, types: &Types) -> Option<String> {
-    /// Maximum number of types in the note.
-    const MOST: usize = 16;
-    let column = table.columns.iter().find(|column| column.name == "type")?;
-    let ColumnValues::Labels(labels) = &column.values else { return None };
-    let symbols = types.symbols_of(&labels.names);
-    let named = || labels.names.iter().zip(&symbols);
-    let mut known = named().filter_map(|(name, symbol)| {
-        let (label, symbol) = (types.label_of(name), symbol.as_ref()?);
-        (label != symbol).then(|| format!("{} is {symbol}", shortened(label)))
-    });
-    let mut shown: Vec<String> = known.by_ref().take(MOST).collect();
-    let more = known.count();
-    if more > 0 {
-        shown.push(format!("{more} more"));
-    }
-    let species: Vec<&str> =
-        named().map(|(name, symbol)| symbol.as_deref().unwrap_or_else(|| types.label_of(name))).collect();
-    let is_any = symbols.iter().any(Option::is_some);
-    let species = is_any.then(|| relabelled(column, "species", &species)).flatten();
-    let labels: Vec<&str> = labels.names.iter().map(|name| types.label_of(name)).collect();
-    let types = relabelled(column, "type", &labels)?;
-    table.columns.retain(|column| column.name != "type");
-    table.columns.push(types);
-    let has_elements = table.columns.iter().any(|column| column.name == "element");
-    if has_elements {
-        return None;
-    }
-    table.columns.extend(species);
-    let note = format!("types are taken as chemical elements by their masses: {}", shown.join(", "));
-    (!shown.is_empty()).then_some(note)
-}
-
-/// Makes a column of text from another one by replacing its names.
-fn relabelled(column: &TableColumn, name: &str, names: &[&str]) -> Option<TableColumn> {
-    let ColumnValues::Labels(labels) = &column.values else { return None };
-    let mut labels = labels.clone();
-    // Several types may be of the same element.
-    let mut unique = LabelsBuilder::default();
-    let renumbered: Vec<u32> = names.iter().map(|name| unique.index(name.as_bytes())).collect();
-    labels.indices.iter_mut().for_each(|index| *index = renumbered[*index as usize]);
-    labels.names = unique.names;
-    Some(TableColumn::labels(name, labels))
 }

@@ -1,5 +1,6 @@
 //! A molecule of MDL while it is read, and the data that it becomes.
 
+use crate::load::bonds::{Numbered, ordered};
 use crate::load::dataset::Dataset;
 use crate::load::error::LoadError;
 use crate::load::format::Options;
@@ -8,9 +9,9 @@ use crate::load::rows;
 use crate::load::table::{Table, TableColumn};
 
 /// The lines of a record, with the number of lines read.
-pub(super) struct NumberedLines<'a> {
-    pub(super) lines: rows::Lines<'a>,
-    pub(super) line: usize,
+pub(in crate::load::formats) struct NumberedLines<'a> {
+    pub(in crate::load::formats) lines: rows::Lines<'a>,
+    pub(in crate::load::formats) line: usize,
 }
 
 impl<'a> Iterator for NumberedLines<'a> {
@@ -25,21 +26,25 @@ impl<'a> Iterator for NumberedLines<'a> {
 
 /// The atoms that were read so far.
 #[derive(Default)]
-pub(super) struct Molecule {
-    pub(super) places: [Vec<f64>; 3],
-    pub(super) species: LabelsBuilder,
-    pub(super) charges: Vec<f64>,
+pub(in crate::load::formats) struct Molecule {
+    pub(in crate::load::formats) places: [Vec<f64>; 3],
+    pub(in crate::load::formats) species: LabelsBuilder,
+    pub(in crate::load::formats) charges: Vec<f64>,
     /// Line of each atom.
-    pub(super) lines: Vec<usize>,
-    /// Number of bonds.
-    pub(super) bonds: usize,
+    pub(in crate::load::formats) lines: Vec<usize>,
+    /// The numbers of the atoms in the file, if they are not 1, 2, 3 and so on.
+    pub(in crate::load::formats) numbers: Vec<i64>,
+    /// The numbers of two bonded atoms, each with the line.
+    pub(in crate::load::formats) bonds: Vec<(usize, [i64; 2])>,
+    /// Further columns.
+    pub(in crate::load::formats) columns: Vec<TableColumn>,
     /// Number of items of data, such as measured values, after the molecule.
-    pub(super) data: usize,
-    pub(super) notes: Vec<String>,
+    pub(in crate::load::formats) data: usize,
+    pub(in crate::load::formats) notes: Vec<String>,
 }
 
 impl Molecule {
-    pub(super) fn push(&mut self, line: usize, place: [f64; 3], symbol: &[u8], charge: f64) {
+    pub(in crate::load::formats) fn push(&mut self, line: usize, place: [f64; 3], symbol: &[u8], charge: f64) {
         for (values, value) in self.places.iter_mut().zip(place) {
             values.push(value);
         }
@@ -48,9 +53,17 @@ impl Molecule {
         self.lines.push(line);
     }
 
-    pub(super) fn into_loaded(self, name: &str, is_drawing: bool, options: &Options) -> Result<Dataset, LoadError> {
-        let Self { places, species, charges, lines, bonds, data, notes } = self;
+    pub(in crate::load::formats) fn into_loaded(
+        self,
+        name: &str,
+        is_drawing: bool,
+        options: &Options,
+    ) -> Result<Dataset, LoadError> {
+        let Self { places, species, charges, lines, numbers, bonds, columns, data, notes } = self;
         let count = lines.len();
+        let number = |row: usize| numbers.get(row).copied().unwrap_or(row as i64 + 1);
+        let rows = Numbered::new((0..count).map(|row| Some(number(row))));
+        let bonds: Vec<_> = bonds.into_iter().map(|(line, pair)| rows.pair(line, pair)).collect::<Result<_, _>>()?;
         let places = ["x", "y", "z"].into_iter().zip(places).map(|(name, values)| TableColumn::numbers(name, values));
         let mut table = Table { columns: places.collect() };
         table.columns.push(TableColumn::labels("species", species.into_labels()));
@@ -61,16 +74,14 @@ impl Molecule {
             molecule.indices = vec![0; count];
             table.columns.push(TableColumn::labels("molecule", molecule.into_labels()));
         }
+        table.columns.extend(columns);
         let mut loaded = rows::into_loaded(table, options, |row| lines.get(row).copied().unwrap_or_default())?;
         loaded.notes.extend(notes);
         if is_drawing {
             loaded.notes.push("the positions are those of a drawing (2D), not of a molecule in space".to_owned());
         }
-        if bonds > 0 {
-            loaded
-                .notes
-                .push(format!("the bonds of the file ({bonds}) are not used; --bonds finds bonds by distances"));
-        }
+        loaded.bonds = ordered(bonds);
+        loaded.has_all_bonds = true;
         if data > 0 {
             loaded.notes.push(format!("the items of data after the molecule ({data}) are not used"));
         }

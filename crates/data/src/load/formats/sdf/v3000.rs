@@ -6,7 +6,7 @@ use crate::load::numbers::number;
 use crate::load::rows::Values;
 use pinhole::internals::text::shortened;
 
-/// Reads the atoms, their charges, and the number of bonds, up to the end of the molecule.
+/// Reads the atoms, their charges, and the bonds, up to the end of the molecule.
 pub(super) fn read(molecule: &mut Molecule, lines: &mut NumberedLines<'_>) -> Result<(), LoadError> {
     let mut declared = None;
     let mut block = Vec::new();
@@ -28,7 +28,16 @@ pub(super) fn read(molecule: &mut Molecule, lines: &mut NumberedLines<'_>) -> Re
             }
             words if block == b"ATOM" && others == 0 => take_atom(molecule, line, words)?,
             _ if block == b"ATOM" => others += 1,
-            _ if block == b"BOND" && others == 0 => molecule.bonds += 1,
+            // The type 10 is a bond of hydrogen.
+            [_, b"10", ..] if block == b"BOND" => {}
+            words if block == b"BOND" && others == 0 && !words.is_empty() => {
+                let numbers: Option<Vec<i64>> = words.iter().skip(2).take(2).map(|word| whole(word)).collect();
+                let Some(&[a, b]) = numbers.as_deref() else {
+                    let message = "a bond has an index, a type, and the numbers of two atoms";
+                    return Err(LoadError::line(line, message));
+                };
+                molecule.bonds.push((line, [a, b]));
+            }
             _ => {}
         }
     }
@@ -77,7 +86,7 @@ fn next(lines: &mut NumberedLines<'_>) -> Result<Option<(usize, Vec<u8>)>, LoadE
 
 /// Appends an atom: its index, its symbol, x, y, z, the number of a mapped atom, and perhaps `CHG=` and other keys.
 fn take_atom(molecule: &mut Molecule, line: usize, words: &[&[u8]]) -> Result<(), LoadError> {
-    let [_, symbol, x, y, z, more @ ..] = words else {
+    let [index, symbol, x, y, z, more @ ..] = words else {
         if words.is_empty() {
             return Ok(());
         }
@@ -99,6 +108,12 @@ fn take_atom(molecule: &mut Molecule, line: usize, words: &[&[u8]]) -> Result<()
         let parsed = number(&found[4..]).filter(|number| number.is_finite());
         charge = parsed.ok_or_else(|| wrong("the charge", index + 8, found))?;
     }
+    // Without a number, an atom has the one of its row.
+    molecule.numbers.push(whole(index).unwrap_or(molecule.lines.len() as i64 + 1));
     molecule.push(line, place, symbol, charge);
     Ok(())
+}
+
+fn whole(text: &[u8]) -> Option<i64> {
+    std::str::from_utf8(text).ok()?.parse().ok()
 }
