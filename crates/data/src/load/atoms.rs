@@ -33,6 +33,8 @@ pub(super) struct Atom<'a> {
     pub(super) record: &'a [u8],
     /// The molecule that the atom belongs to, in mmCIF.
     pub(super) entity: Option<&'a [u8]>,
+    /// The partial charge and the type of AutoDock, in PDBQT files.
+    pub(super) docking: Option<(f64, &'a [u8])>,
     /// The letter of the alternate location, or a blank.
     pub(super) letter: u8,
     /// The insertion code of the residue, or a blank.
@@ -53,6 +55,8 @@ pub(super) struct Atoms {
     chain: LabelsBuilder,
     record: LabelsBuilder,
     entity: LabelsBuilder,
+    charge: Vec<f64>,
+    kind: LabelsBuilder,
     residue_number: Vec<f64>,
     occupancy: Vec<f64>,
     b_factor: Vec<f64>,
@@ -104,6 +108,10 @@ impl Atoms {
         self.record.push(atom.record);
         if let Some(entity) = atom.entity {
             self.entity.push(entity);
+        }
+        if let Some((charge, kind)) = atom.docking {
+            self.charge.push(charge);
+            self.kind.push(kind);
         }
         if element::is_doubtful(atom.name_field, atom.symbol, residue, atom.residue) {
             self.doubtful.push(self.spheres.len());
@@ -184,6 +192,8 @@ impl Atoms {
             labels.retain(&keep);
         }
         self.entity.retain(&keep);
+        self.kind.retain(&keep);
+        retain(&mut self.charge, &keep);
         self.bonds = bonds::kept(&self.bonds, &keep);
         let atoms = if left_out == 1 { "1 atom is" } else { &format!("{left_out} atoms are") };
         Some(format!(
@@ -229,6 +239,10 @@ impl Atoms {
         if !self.entity.indices.is_empty() {
             let values = self.entity.into_values();
             loaded.columns.push(Column { name: "entity".to_owned(), values });
+        }
+        if !self.charge.is_empty() {
+            loaded.columns.push(Column { name: "charge".to_owned(), values: ColumnValues::Numbers(self.charge) });
+            loaded.columns.push(Column { name: "type".to_owned(), values: self.kind.into_values() });
         }
         // Columns that say nothing are left out: no insertion codes, and numbers that follow each other from 1.
         if self.letters.iter().any(|letters| letters[1] != b' ') {

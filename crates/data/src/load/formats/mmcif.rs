@@ -192,6 +192,7 @@ fn push(
         chain: text(9),
         record: if columns.has[13] { text(13) } else { b"HETATM" },
         entity: columns.has[16].then(|| text(16)),
+        docking: None,
         letter: letter(14),
         insertion: letter(15),
         serial: decimal(values[17].1).unwrap_or(f64::NAN),

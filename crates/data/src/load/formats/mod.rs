@@ -19,6 +19,7 @@ mod gsd;
 pub mod lammps;
 mod las;
 pub mod mmcif;
+mod mol2;
 pub mod npy;
 pub mod npz;
 pub mod pdb;
@@ -81,6 +82,14 @@ pub static FORMATS: &[Format] = &[
         ..TEXT
     },
     Format {
+        name: "pdbqt",
+        extensions: &["pdbqt"],
+        about: "PDB with the partial charges and types of AutoDock; a frame is a model",
+        method: ReadMethod::Frames(pdb::DOCKING),
+        has_colors: true,
+        ..TEXT
+    },
+    Format {
         name: "gro",
         extensions: &["gro"],
         about: "Text in the fixed columns of GROMACS, with a box and perhaps velocities",
@@ -130,6 +139,16 @@ pub static FORMATS: &[Format] = &[
         may_lack_radii: true,
         has_colors: true,
         starts: sdf::starts,
+        ..TEXT
+    },
+    Format {
+        name: "mol2",
+        extensions: &["mol2"],
+        about: "Molecules of Tripos, with residues and a cell; a frame is a molecule",
+        method: ReadMethod::Frames(mol2::FRAMES),
+        may_lack_radii: true,
+        has_colors: true,
+        starts: mol2::starts,
         ..TEXT
     },
     Format {
@@ -396,6 +415,7 @@ mod tests {
             (b"Water t= 0\n 1\n    1SOL     OW    1   0.126   1.624   1.679\n", "gro"),
             (b"salt\n5.64\n1 0 0\n0 1 0\n0 0 1\nNa Cl\n4 4\nDirect\n", "poscar"),
             (b"water\n\n\n  3  2  0  0  0  0            999 V2000\n", "sdf"),
+            (b"# made\n\n@<TRIPOS>MOLECULE\nwater\n", "mol2"),
             (b"ITEM: TIMESTEP\n0\n", "lammps-dump"),
             (b"id,X,y,z,q\n1,2", "csv"),
             (b"made by me\n\n 20 atoms\n", "lammps-data"),

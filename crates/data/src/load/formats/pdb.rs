@@ -7,6 +7,8 @@
 //! The columns are `species`, `name`, `residue`, `chain`, `residue_number`, `b_factor`, `occupancy` and
 //! `record`. One location of an atom with alternate locations is kept.
 //!
+//! PDBQT files of AutoDock have the columns `charge` and `type` as well.
+//!
 //! Many programs deviate from the format, so this reader also accepts residue names of four characters,
 //! residue numbers in hybrid-36, and lines that end after the coordinates.
 
@@ -35,7 +37,10 @@ pub fn read(bytes: &[u8], frame: usize) -> Result<Dataset, LoadError> {
     read_from_memory(bytes, FRAMES, &Options::default().with_frame(frame), None)
 }
 
-pub(super) const FRAMES: Frames = Frames::Lines { find, read: read_frame };
+pub(super) const FRAMES: Frames = Frames::Lines { find, read: |frame, _| read_frame(frame, false) };
+
+/// Files of AutoDock, PDBQT, which have a partial charge and a type in the place of the element.
+pub(super) const DOCKING: Frames = Frames::Lines { find, read: |frame, _| read_frame(frame, true) };
 
 /// Finds frames by their MODEL records, and checks the order of all records. The lines before the first are read with
 /// every frame.
@@ -54,7 +59,7 @@ fn find(lines: &mut LineReader<'_>, _: Option<usize>) -> io::Result<FrameIndex> 
             found.tail = FrameSpan::default();
             return Ok(found);
         }
-        if Kind::of(text) == Kind::Conect && reader.open.is_none() && found.tail.bytes.end == 0 {
+        if Kind::of(text) == Kind::Bonds && reader.open.is_none() && found.tail.bytes.end == 0 {
             found.tail = FrameSpan { bytes: offset..u64::MAX, lines_before };
         }
         if reader.models > models {
@@ -85,12 +90,12 @@ fn find(lines: &mut LineReader<'_>, _: Option<usize>) -> io::Result<FrameIndex> 
     Ok(found)
 }
 
-fn read_frame(frame: &FrameText<'_>, _: &Options) -> Result<Dataset, LoadError> {
+fn read_frame(frame: &FrameText<'_>, is_docking: bool) -> Result<Dataset, LoadError> {
     let head = without_byte_order_mark(frame.head);
     let text = without_byte_order_mark(frame.text);
     // Lines of atoms are rarely shorter than this: they end after the B-factor, which is in columns 61 to 66.
     let atoms = Atoms::with_capacity(text.len() / 67);
-    let mut reader = Reader { atoms, ..Reader::default() };
+    let mut reader = Reader { atoms, is_docking, ..Reader::default() };
     let text = Lines::new(text).map(|(line, text)| (frame.lines_before + line, text));
     for (line, text) in Lines::new(head).chain(text) {
         reader.take(line, text)?;
@@ -134,6 +139,8 @@ struct Reader {
     has_symmetry: bool,
     atoms: Atoms,
     links: Links,
+    /// True if the file is one of AutoDock.
+    is_docking: bool,
 }
 
 impl Reader {
@@ -160,7 +167,7 @@ impl Reader {
                 Ok(())
             }
             // While frames are found, no frame is read.
-            Kind::Conect if self.frame != usize::MAX => {
+            Kind::Bonds if self.frame != usize::MAX => {
                 self.links.take(line, text);
                 Ok(())
             }
@@ -200,7 +207,7 @@ impl Reader {
         if self.models.saturating_sub(1) != self.frame {
             return Ok(());
         }
-        push(&mut self.atoms, &Record::new(line, text, record)?)
+        push(&mut self.atoms, &Record::new(line, text, record)?, self.is_docking)
     }
 
     fn model(&mut self, line: usize) -> Result<(), LoadError> {
@@ -249,6 +256,21 @@ impl Reader {
     }
 }
 
+/// The symbol of the element of a type of AutoDock, in which the second letter may be that of acceptors and donors of
+/// bonds of hydrogen; blank for others, such as the ends of open rings.
+fn element_of_docking(kind: &[u8]) -> [u8; 2] {
+    match *kind {
+        [b'A' | b'C'] | [b'C', b'G', ..] => *b" C",
+        [b'O' | b'W'] | [b'O', b'A'] => *b" O",
+        [b'N', b'A' | b'S'] => *b" N",
+        [b'S', b'A'] => *b" S",
+        [b'H', b'D' | b'S'] => *b" H",
+        [a] => [b' ', a],
+        [a, b] if !(a == b'G' && b.is_ascii_digit()) => [a, b],
+        _ => *b"  ",
+    }
+}
+
 fn no_atoms() -> LoadError {
     LoadError::new("there are no ATOM or HETATM records; a PDB file has one for each atom")
 }
@@ -277,7 +299,7 @@ const NEEDED: [(&str, usize, usize); 6] = [
 ];
 
 /// Appends the atom of an ATOM or HETATM record.
-fn push(atoms: &mut Atoms, record: &Record<'_>) -> Result<(), LoadError> {
+fn push(atoms: &mut Atoms, record: &Record<'_>, is_docking: bool) -> Result<(), LoadError> {
     record.must_have(&NEEDED)?;
     let text = record.text(23, 26);
     let number = hybrid36(text).ok_or_else(|| {
@@ -296,6 +318,12 @@ fn push(atoms: &mut Atoms, record: &Record<'_>) -> Result<(), LoadError> {
     let ([letter], [insertion]) = (record.bytes(17), record.bytes(27));
     // A number of six digits begins within the name of the record, after ATOM.
     let first_of_serial = if record.bytes::<1>(6)[0].is_ascii_digit() { 6 } else { 7 };
+    let kind = record.text(77, 80);
+    let docking = match is_docking {
+        true => Some((record.number_or(0.0, "partial charge", 67, 76)?, kind)),
+        false => None,
+    };
+    let symbol = if is_docking { element_of_docking(kind) } else { record.bytes(77) };
     atoms.push(&Atom {
         place,
         occupancy: record.number_or(1.0, "occupancy", 55, 60)?,
@@ -303,12 +331,13 @@ fn push(atoms: &mut Atoms, record: &Record<'_>) -> Result<(), LoadError> {
         residue_number: f64::from(number),
         name: record.bytes::<4>(13).trim_ascii(),
         name_field: record.bytes(13),
-        symbol: record.bytes(77),
+        symbol,
         // The format has residue names of three characters and a blank column 21. Other programs use all four columns.
         residue: record.bytes::<4>(18).trim_ascii(),
         chain: record.bytes::<1>(22).trim_ascii(),
         record: record.name.as_bytes(),
         entity: None,
+        docking,
         letter,
         insertion,
         serial: hybrid36(record.text(first_of_serial, 11)).map_or(f64::NAN, f64::from),

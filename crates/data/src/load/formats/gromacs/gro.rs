@@ -181,6 +181,7 @@ impl Reader {
             chain: b"",
             record: b"",
             entity: None,
+            docking: None,
             letter: b' ',
             insertion: b' ',
             serial: f64::NAN,

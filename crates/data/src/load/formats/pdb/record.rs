@@ -13,7 +13,7 @@ pub(super) enum Kind {
     Model,
     Endmdl,
     End,
-    Conect,
+    Bonds,
     /// A name of mmCIF, which stands before the atoms of such files. It is not a PDB record.
     AtomSite,
     Other,
@@ -30,7 +30,7 @@ impl Kind {
             Some(b'A') if is(b"ATOM") => Self::Atom,
             Some(b'H') if line.starts_with(b"HETATM") => Self::Hetatm,
             Some(b'C') if line.starts_with(b"CRYST1") => Self::Cryst1,
-            Some(b'C') if line.starts_with(b"CONECT") => Self::Conect,
+            Some(b'C') if line.starts_with(b"CONECT") => Self::Bonds,
             Some(b'M') if is(b"MODEL") => Self::Model,
             Some(b'E') if is(b"ENDMDL") => Self::Endmdl,
             Some(b'E') if is(b"END") => Self::End,
