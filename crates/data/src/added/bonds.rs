@@ -5,7 +5,7 @@ use glam::DVec3;
 use super::atoms::{Atoms, no_elements};
 use super::neighbours::{Neighbours, neighbours};
 use super::shapes::{AddError, AddedShapes, Look, between};
-use crate::load::{Dataset, covalent};
+use crate::load::Dataset;
 use pinhole::scene::Appearance;
 use pinhole::scene::material::Material;
 use pinhole::scene::sphere_array::SphereArray;
