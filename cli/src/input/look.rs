@@ -178,15 +178,16 @@ impl Source {
             color,
             ..
         } = details;
+        let spheres = match (&self.bricks, &kept) {
+            (Some(bricks), _) => bricks.whole().count as usize,
+            (None, Some(kept)) => kept.kept,
+            (None, None) => scene.len() - scene.added(),
+        };
         let report = Report {
             path: self.path.display().to_string(),
-            spheres: match (&self.bricks, &kept) {
-                (Some(bricks), _) => bricks.whole().count as usize,
-                (None, Some(kept)) => kept.kept,
-                (None, None) => scene.len() - scene.added(),
-            },
+            spheres,
             cones: file.shapes().cone_count(),
-            selected_from: kept.map(|kept| kept.of),
+            selected_from: kept.map(|kept| kept.of).filter(|of| *of != spheres),
             bonds,
             has_atoms,
             style: file.style(),

@@ -120,11 +120,11 @@ impl<'a> Shown<'a> {
 
     /// The number of spheres that are drawn, or part of a tube, after a selection kept some.
     #[must_use]
-    pub fn kept(&self, selected: Option<KeptSpheres>) -> Option<KeptSpheres> {
+    pub fn kept(&self, selected: Option<KeptSpheres>) -> KeptSpheres {
         let count = self.drawn.len();
         let kept = (0..count).filter(|index| self.is_drawn(*index) || self.traces[*index].is_some()).count();
         let selected = selected.unwrap_or(KeptSpheres { kept: count, of: count, notes: Vec::new() });
-        (kept < selected.of).then_some(KeptSpheres { kept, ..selected })
+        KeptSpheres { kept, ..selected }
     }
 
     /// Returns true if a sphere is drawn as it is without rules.

@@ -6,7 +6,7 @@ use super::rule::{ShowRule, ShowStyle};
 use crate::added::{StickSize, radius_factor};
 use crate::load::Dataset;
 
-/// Radii in Å of sticks with joints, thin sticks and sticks between balls. That of sticks is PyMOL's `stick_radius`.
+/// Radii in Å of sticks with joints, thin sticks and sticks between balls. That of sticks is `stick_radius` of `PyMOL`.
 const ATOMS: [f64; 3] = [0.25, 0.07, 0.14];
 
 /// The same for spheres that are not atoms of elements, as parts of the distance between neighbours.

@@ -28,7 +28,7 @@ pub struct DataScene {
     pub columns: Vec<Column>,
     /// Notes for the user, such as names that do not occur in the data.
     pub notes: Vec<String>,
-    /// What the selection kept, if there is one.
+    /// What the selection kept and rules draw, if there are any.
     pub kept: Option<KeptSpheres>,
     /// The number of bonds, if bonds are drawn.
     pub bonds: Option<usize>,
@@ -127,7 +127,7 @@ impl Data {
             .with_focus(&in_focus);
         let bonds = (self.additions.bonds.is_some() || added.bonds() > 0).then_some(added.bonds());
         let kept = match &shown {
-            Some(shown) => shown.kept(kept),
+            Some(shown) => Some(shown.kept(kept)),
             None => kept,
         };
         let arrow_key = added.arrow_key().cloned();

@@ -133,7 +133,7 @@ fn a_trace_follows_each_chain() {
     let rules = "[[show]]\nselect = \"protein\"\nas = \"trace\"\ncolor = \"chain\"\n";
     let DataScene { scene, notes, color_key, kept, .. } = made(chains(), rules);
     // No atom is drawn; tubes go through four atoms and three.
-    assert_eq!((scene.len(), kept), (scene.added(), None));
+    assert_eq!((scene.len(), kept.map(|kept| (kept.kept, kept.of))), (scene.added(), Some((16, 16))));
     assert_eq!(notes, [] as [&str; 0]);
     assert!(radii(&scene).iter().all(|radius| *radius == 400), "{:?}", radii(&scene));
     assert_eq!(color_key.map(|key| key.title), Some("chain".to_owned()));
@@ -228,7 +228,7 @@ fn flags_say_rules() {
     }
     for (value, message) in [
         ("protein", "`protein` is no style; use spacefill"),
-        ("protein = stix", "`stix` is no style"),
+        ("protein = sticky", "`sticky` is no style"),
         ("protein = sticks, radius", "`radius` is not KEY=VALUE"),
     ] {
         let error = layer("show", value).unwrap_err();
