@@ -74,3 +74,22 @@ def test_data_that_is_refused(settings, words):
     with pytest.raises(ph.InputError) as error:
         ph.Spheres(cloud(20), 0.2, **settings)
     assert words in str(error.value)
+
+
+def test_rules_say_what_is_drawn(tmp_path):
+    path = tmp_path / "a.xyz"
+    path.write_text("3\n\nO 0 0 0\nH 0.96 0 0\nC 9 0 0\n")
+    with pytest.warns(ph.Note, match="1 of 3 spheres are in no rule"):
+        sticks = ph.read(path).show("element O H", "licorice", radius=0.2)
+    np.testing.assert_allclose(sticks.radii, [0.2, 0.2])
+    both = sticks.show("rest", "ghost")
+    np.testing.assert_allclose(both.radii, [0.2, 0.2, 1.77], rtol=1e-6)
+    again = ph.read(path, show=[("element O H", "licorice", {"radius": 0.2}), ("rest", "ghost")])
+    np.testing.assert_array_equal(again.radii, both.radii)
+    np.testing.assert_allclose(ph.read(path, show="lines").radii, 0.07)
+    with pytest.raises(ph.InputError, match=r"render\(...\) makes a picture"):
+        sticks.show()
+    with pytest.raises(ph.InputError, match="`stick-figure` is no style"):
+        sticks.show("stick-figure")
+    with pytest.raises(ph.InputError, match="is no rule"):
+        ph.read(path, show=[3])

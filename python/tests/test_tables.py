@@ -16,6 +16,7 @@ from pinhole import _tables
 
 #: What each table needs besides other keys.
 NEEDS = {
+    "Arrows": {"vector": "forces"},
     "Light": {"kind": "head"},
     "Sky": {"kind": "constant"},
     "Material": {"kind": "lambert"},
