@@ -186,8 +186,8 @@ impl<'a> Shown<'a> {
         });
     }
 
-    /// What [`Additions::add`](crate::added::Additions::add) must know. `are_plain` says whether spheres without a rule have
-    /// sticks.
+    /// The spheres and sticks that are drawn, for [`Additions::add`](crate::added::Additions::add). `are_plain` says whether
+    /// spheres without a rule have sticks.
     #[must_use]
     pub fn drawn_spheres(&self, data: &Dataset, are_plain: bool) -> DrawnSpheres {
         let measures = Measures::of(data);
