@@ -1,4 +1,4 @@
-//! What is known about atoms that distances may join.
+//! The elements of atoms that distances may join, and their ions.
 
 use super::shapes::AddError;
 use crate::load::{ColumnValues, Covalent, Dataset, Family, Labels, covalent};

@@ -8,7 +8,6 @@ use super::shapes::{AddError, AddedShapes, Look, between};
 use crate::load::Dataset;
 use pinhole::scene::Appearance;
 use pinhole::scene::material::Material;
-use pinhole::scene::sphere_array::SphereArray;
 
 /// The choice of bonded atoms. Bonds are drawn as cylinders, each half with the look of its atom.
 #[derive(Clone, Debug, PartialEq)]
@@ -75,11 +74,6 @@ pub(crate) fn radius_factor(is_element: bool) -> f64 {
     if is_element { BALL } else { OTHER_BALL }
 }
 
-fn center(spheres: &SphereArray, index: usize) -> (DVec3, f64) {
-    let [x, y, z, radius] = spheres.at(index);
-    (DVec3::new(x, y, z), radius)
-}
-
 impl Bonds {
     /// Adds sticks. `sticks` has their sizes at each sphere.
     pub(super) fn add(
@@ -90,7 +84,7 @@ impl Bonds {
         added: &mut AddedShapes,
     ) -> Result<(), AddError> {
         let count = data.spheres.len();
-        let points: Vec<DVec3> = (0..count).map(|index| center(&data.spheres, index).0).collect();
+        let points: Vec<DVec3> = (0..count).map(|index| data.center(index)).collect();
         let Neighbours { within, across } = match self.length {
             BondLength::Below(length) => {
                 check("length", length)?;
@@ -110,7 +104,8 @@ impl Bonds {
         for (a, b, image) in within.chain(across).filter(are_sticks) {
             // A bond across the border of the cell is there from both sides.
             halves += if image.is_none() { 2 } else { 1 };
-            let ((from, ball_a), (to, ball_b)) = (center(&data.spheres, a as usize), center(&data.spheres, b as usize));
+            let [from, to] = [a, b].map(|index| data.center(index as usize));
+            let [ball_a, ball_b] = [a, b].map(|index| data.spheres.at(index as usize)[3]);
             let to = image.unwrap_or(to);
             let radius_of = |index, ball| match size(index) {
                 StickSize::None | StickSize::OfBalls => STICK * ball_a.min(ball_b),
@@ -161,7 +156,7 @@ fn check(what: &str, value: f64) -> Result<(), AddError> {
 
 /// The pairs of bonded atoms with the factor by default, also across the borders of a periodic cell.
 pub(crate) fn bonded_pairs(data: &Dataset) -> Result<Vec<[u32; 2]>, AddError> {
-    let points: Vec<DVec3> = (0..data.spheres.len()).map(|index| center(&data.spheres, index).0).collect();
+    let points: Vec<DVec3> = (0..data.spheres.len()).map(|index| data.center(index)).collect();
     let Neighbours { mut within, across } = covalent_bonds(Bonds::FACTOR, data, &points, &mut Vec::new())?;
     within.extend(across.into_iter().filter(|(a, b, _)| a < b).map(|(a, b, _)| [a, b]));
     within.sort_unstable();

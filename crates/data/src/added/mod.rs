@@ -85,14 +85,14 @@ impl Additions {
     }
 }
 
-/// Which spheres are drawn, and the sticks between them.
+/// The spheres that are drawn, and the sticks between them.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct DrawnSpheres {
     /// The size of the stick at each sphere.
     pub sticks: Vec<StickSize>,
-    /// Whether each sphere is drawn, and so its arrow.
+    /// True for each sphere that is drawn, with its arrow.
     pub are_drawn: Vec<bool>,
-    /// Whether there are sticks although nobody asked for bonds.
+    /// True if there are sticks although nobody asked for bonds.
     pub need_bonds: bool,
 }
 

@@ -102,6 +102,12 @@ pub(super) fn retain<T>(values: &mut Vec<T>, is_kept: &[bool]) {
     values.retain(|_| is_kept.next().copied().unwrap_or(true));
 }
 
+/// The centre of a sphere.
+pub(super) fn center(spheres: &SphereArray, index: usize) -> DVec3 {
+    let [x, y, z, _] = spheres.at(index);
+    DVec3::new(x, y, z)
+}
+
 impl Dataset {
     /// Makes a `Dataset` that has spheres and nothing else.
     #[must_use]
@@ -127,14 +133,14 @@ impl Dataset {
     /// place.
     #[must_use]
     pub fn spacing(&self) -> f64 {
-        let at = |index| self.spheres.at(index);
-        let center = |index| {
-            let [x, y, z, _] = at(index);
-            DVec3::new(x, y, z)
-        };
         let count = self.spheres.len();
-        let largest = || (0..count).map(|index| at(index)[3]).fold(0.0, f64::max);
-        2.0 * spacing::radius(count, center).unwrap_or_else(largest)
+        let largest = || (0..count).map(|index| self.spheres.at(index)[3]).fold(0.0, f64::max);
+        2.0 * spacing::radius(count, |index| self.center(index)).unwrap_or_else(largest)
+    }
+
+    /// The centre of a sphere.
+    pub(crate) fn center(&self, index: usize) -> DVec3 {
+        center(&self.spheres, index)
     }
 
     /// Returns the values of the column with this name.

@@ -3,7 +3,7 @@
 
 use glam::DVec3;
 
-use super::dataset::{Column, ColumnValues, Dataset, Labels};
+use super::dataset::{Column, ColumnValues, Dataset, Labels, center};
 use super::elements::{UnknownSpecies, appearance};
 use super::error::{LoadError, LoadErrorKind, Place};
 use super::format::Options;
@@ -297,11 +297,6 @@ impl TableColumn {
 
 fn set_radii(spheres: &mut SphereArray, radius: impl Fn(usize) -> f64) {
     spheres.map_radii(|row, _| radius(row));
-}
-
-fn center(spheres: &SphereArray, row: usize) -> DVec3 {
-    let [x, y, z, _] = spheres.at(row);
-    DVec3::new(x, y, z)
 }
 
 /// The radius of spheres whose file has none, with a note.

@@ -214,12 +214,9 @@ impl<'a> Data<'a> {
 
     /// The centres of all spheres.
     pub(super) fn points(&mut self) -> Rc<Vec<DVec3>> {
-        let spheres = &self.loaded.spheres;
-        let center = |index| {
-            let [x, y, z, _] = spheres.at(index);
-            DVec3::new(x, y, z)
-        };
-        let points = self.points.get_or_insert_with(|| Rc::new((0..spheres.len()).map(center).collect()));
+        let data = self.loaded;
+        let all = || Rc::new((0..data.spheres.len()).map(|index| data.center(index)).collect());
+        let points = self.points.get_or_insert_with(all);
         Rc::clone(points)
     }
 

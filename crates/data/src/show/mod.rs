@@ -74,16 +74,14 @@ impl<'a> Shown<'a> {
         let before = if is_partial { Drawn::Not } else { Drawn::Plain };
         let mut shown =
             Self { rules, drawn: vec![before; count], traces: vec![None; count], ghosts: vec![false; count], notes };
-        let mut is_named = vec![false; count];
         for ((rule, part), number) in rules.iter().zip(&parts).zip(0..) {
             let part = part.as_ref().unwrap_or(&rest);
             for index in (0..count).filter(|index| part[*index]) {
                 shown.apply(rule.style, number, index);
-                is_named[index] = true;
             }
         }
-        let left_out = is_named.iter().filter(|is_named| !**is_named).count();
-        if is_partial && left_out > 0 {
+        let left_out = rest.iter().filter(|is_left| **is_left).count();
+        if is_partial && left_out > 0 && !parts.contains(&None) {
             shown.notes.push(format!(
                 "{left_out} of {count} spheres are in no rule of `show` and not drawn; --show 'rest = ghost' draws them \
                  faintly"

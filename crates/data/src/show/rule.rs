@@ -35,6 +35,11 @@ impl ShowRule {
     pub fn new(part: ShownPart, style: ShowStyle) -> Self {
         Self { part, style, radius: None, scale: 1.0, stick: None }
     }
+
+    /// The radius that the rule says, where its style has another one.
+    pub(super) fn radius_or(&self, of_style: f64) -> f64 {
+        self.scale * self.radius.unwrap_or(of_style)
+    }
 }
 
 /// The style in which spheres are drawn.

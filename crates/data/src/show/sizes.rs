@@ -9,7 +9,7 @@ use crate::load::Dataset;
 /// Radii in Å of sticks with joints, thin sticks and sticks between balls. That of sticks is `stick_radius` of `PyMOL`.
 const ATOMS: [f64; 3] = [0.25, 0.07, 0.14];
 
-/// The same for spheres that are not atoms of elements, as parts of the distance between neighbours.
+/// Such radii for spheres that are not atoms of elements, as parts of the distance between neighbours.
 const OTHERS: [f64; 3] = [0.17, 0.05, 0.12];
 
 /// The radius of points, as a part of the longest side of the box of all centres.
@@ -18,14 +18,14 @@ const POINT: f64 = 1.0 / 400.0;
 /// Lengths in data from which sizes follow.
 pub(super) struct Measures {
     /// The median distance from a sphere to its nearest neighbour.
-    pub(super) spacing: f64,
+    spacing: f64,
     /// The longest side of the box of all centres.
     size: f64,
 }
 
 impl Measures {
     pub(super) fn of(data: &Dataset) -> Self {
-        let centers = (0..data.spheres.len()).map(|index| DVec3::from_slice(&data.spheres.at(index)[..3]));
+        let centers = (0..data.spheres.len()).map(|index| data.center(index));
         let finite = centers.filter(|center| center.is_finite());
         let [low, high] = finite
             .fold([DVec3::INFINITY, DVec3::NEG_INFINITY], |[low, high], center| [low.min(center), high.max(center)]);
@@ -46,7 +46,7 @@ impl Measures {
             ShowStyle::Points => POINT * self.size,
             ShowStyle::Spacefill | ShowStyle::Trace | ShowStyle::Ghost | ShowStyle::Hidden => own,
         };
-        rule.scale * rule.radius.unwrap_or(of_style)
+        rule.radius_or(of_style)
     }
 
     /// The stick at a sphere that has a rule.

@@ -5,8 +5,6 @@ use std::collections::HashSet;
 use glam::DVec3;
 
 use super::Shown;
-use super::rule::ShowRule;
-use super::sizes::Measures;
 use crate::added::{AddError, AddedShapes, bonded_pairs};
 use crate::load::{ColumnValues, Dataset};
 use crate::select::Selection;
@@ -17,20 +15,18 @@ use pinhole::scene::tube::Tube;
 /// The atoms through which a tube goes, by name: the radius of the tube and the greatest distance of neighbours, both in Å.
 const GUIDES: [(&str, f64, f64); 3] = [("CA", 0.4, 5.0), ("P", 0.6, 9.0), ("BB", 0.5, 6.0)];
 
-/// The same for other spheres, as parts of the distance between neighbours.
+/// The radius and the greatest distance for other spheres, as parts of the distance between neighbours.
 const OTHERS: (f64, f64) = (0.3, 2.0);
 
 /// The columns whose values are the same along a chain.
 const CHAIN: [&str; 5] = ["chain", "segid", "mol", "molecule", "model"];
 
-/// The spheres through which tubes go.
-struct Guides {
-    /// The spheres, in their order.
-    spheres: Vec<usize>,
-    /// For each, the radius and the greatest distance to the next.
-    sizes: Vec<(f64, f64)>,
-    /// The only pairs that follow each other, if bonds are known.
-    bonds: Option<HashSet<[u32; 2]>>,
+/// A sphere through which a tube goes.
+struct Guide {
+    sphere: usize,
+    radius: f64,
+    /// The greatest distance to the next one.
+    reach: f64,
 }
 
 impl Shown<'_> {
@@ -52,33 +48,32 @@ impl Shown<'_> {
                 ColumnValues::Numbers(numbers) => numbers.get(a) == numbers.get(b),
             })
         };
-        let place = |index: usize| DVec3::from_slice(&data.spheres.at(index)[..3]);
+        // The selection and the bonds are the same for all rules.
+        let (mut is_guide, mut known) = (None, None);
         for (number, rule, spheres) in self.traces() {
-            let guides = Guides::new(data, spheres);
-            let follows = |a: usize, b: usize| {
-                let (from, to) = (guides.spheres[a], guides.spheres[b]);
-                let pair = [from.min(to) as u32, from.max(to) as u32];
+            let is_guide = is_guide.get_or_insert_with(|| guides(data));
+            let (guides, bonds): (_, Option<&HashSet<[u32; 2]>>) = match named(data, is_guide, &spheres) {
+                Some(named) => (named, None),
+                None => {
+                    let known = known.get_or_insert_with(|| bonded_pairs(data).ok().map(HashSet::from_iter));
+                    (unnamed(data, spheres), known.as_ref())
+                }
+            };
+            let follows = |a: &Guide, b: &Guide| {
+                let (from, to) = (a.sphere, b.sphere);
                 is_same(from, to)
-                    && guides.bonds.as_ref().is_none_or(|bonds| bonds.contains(&pair))
-                    && place(from).distance(place(to)) <= guides.sizes[a].1.max(guides.sizes[b].1)
+                    && bonds.is_none_or(|bonds| bonds.contains(&[from.min(to) as u32, from.max(to) as u32]))
+                    && data.center(from).distance(data.center(to)) <= a.reach.max(b.reach)
             };
             let mut has_tube = false;
-            let mut start = 0;
-            for end in 1..=guides.spheres.len() {
-                if end < guides.spheres.len() && follows(end - 1, end) {
-                    continue;
-                }
-                if end - start > 1 {
-                    has_tube = true;
-                    let run = &guides.spheres[start..end];
-                    let point = |at: usize| {
-                        let [x, y, z, _] = data.spheres.at(guides.spheres[at]);
-                        [x, y, z, radius(rule, guides.sizes[at].0)]
-                    };
-                    let points: Vec<[f64; 4]> = (start..end).map(point).collect();
-                    added.push_tube(&Tube::through(&points), &points, |at| look(number, run[at]))?;
-                }
-                start = end;
+            for run in guides.chunk_by(follows).filter(|run| run.len() > 1) {
+                has_tube = true;
+                let point = |guide: &Guide| {
+                    let DVec3 { x, y, z } = data.center(guide.sphere);
+                    [x, y, z, rule.radius_or(guide.radius)]
+                };
+                let points: Vec<[f64; 4]> = run.iter().map(point).collect();
+                added.push_tube(&Tube::through(&points), &points, |at| look(number, run[at].sphere))?;
             }
             if !has_tube {
                 added.note(
@@ -91,29 +86,28 @@ impl Shown<'_> {
     }
 }
 
-fn radius(rule: &ShowRule, of_style: f64) -> f64 {
-    rule.scale * rule.radius.unwrap_or(of_style)
+/// Tells which spheres are atoms through which tubes go; `None` if the data has no names of atoms and residues.
+fn guides(data: &Dataset) -> Option<Vec<bool>> {
+    let guides = "guide or (polymer and name BB)".parse::<Selection>().and_then(|guides| guides.matches(data));
+    guides.ok().map(|(is_guide, _)| is_guide)
 }
 
-impl Guides {
-    fn new(data: &Dataset, mut spheres: Vec<usize>) -> Self {
-        let guides = "guide or (polymer and name BB)".parse::<Selection>().and_then(|guides| guides.matches(data));
-        let names = data.labels("name");
-        if let (Ok((is_guide, _)), Some(names)) = (guides, names)
-            && spheres.iter().any(|index| is_guide[*index])
-        {
-            spheres.retain(|index| is_guide[*index]);
-            let size = |index: &usize| {
-                let name = names.indices.get(*index).and_then(|name| names.names.get(*name as usize));
-                let guide = GUIDES.iter().find(|(known, ..)| name.is_some_and(|name| name == known));
-                guide.map_or((GUIDES[0].1, GUIDES[0].2), |(_, radius, reach)| (*radius, *reach))
-            };
-            let sizes = spheres.iter().map(size).collect();
-            return Self { spheres, sizes, bonds: None };
-        }
-        let spacing = Measures::of(data).spacing;
-        let sizes = vec![(OTHERS.0 * spacing, OTHERS.1 * spacing); spheres.len()];
-        let bonds = bonded_pairs(data).ok().map(|pairs| pairs.into_iter().collect());
-        Self { spheres, sizes, bonds }
-    }
+/// The atoms among these spheres through which a tube goes, by their names; `None` if there are none.
+fn named(data: &Dataset, is_guide: &Option<Vec<bool>>, spheres: &[usize]) -> Option<Vec<Guide>> {
+    let (is_guide, names) = is_guide.as_ref().zip(data.labels("name"))?;
+    let guide = |index: &usize| {
+        let name = names.indices.get(*index).and_then(|name| names.names.get(*name as usize));
+        let guide = GUIDES.iter().find(|(known, ..)| name.is_some_and(|name| name == known));
+        let (_, radius, reach) = *guide.unwrap_or(&GUIDES[0]);
+        Guide { sphere: *index, radius, reach }
+    };
+    let guides: Vec<Guide> = spheres.iter().filter(|index| is_guide[**index]).map(guide).collect();
+    (!guides.is_empty()).then_some(guides)
+}
+
+/// All of these spheres, without names.
+fn unnamed(data: &Dataset, spheres: Vec<usize>) -> Vec<Guide> {
+    let spacing = data.spacing();
+    let (radius, reach) = (OTHERS.0 * spacing, OTHERS.1 * spacing);
+    spheres.into_iter().map(|sphere| Guide { sphere, radius, reach }).collect()
 }

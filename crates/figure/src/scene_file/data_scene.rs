@@ -28,7 +28,7 @@ pub struct DataScene {
     pub columns: Vec<Column>,
     /// Notes for the user, such as names that do not occur in the data.
     pub notes: Vec<String>,
-    /// What the selection kept and rules draw, if there are any.
+    /// The number of spheres that the selection kept and rules draw, if there are any.
     pub kept: Option<KeptSpheres>,
     /// The number of bonds, if bonds are drawn.
     pub bonds: Option<usize>,
@@ -100,8 +100,9 @@ impl Data {
         let differ = surfaces.iter().any(|surface| *surface != self.surface);
         let surface_of: &[u32] = if differ { &elements } else { &[] };
         let mut appearance = mapped.appearance(count, colors, &surfaces, surface_of);
-        let looks =
-            shown.as_ref().map(|shown| RuleLooks::new(&self.shows, shown, &loaded, &appearance, of_elements.as_ref()));
+        let looks = shown
+            .as_ref()
+            .map(|shown| RuleLooks::new(&self.shows, shown, &loaded, &appearance, of_elements.as_deref()));
         let looks = looks.transpose()?;
         let of_rules = looks.as_ref().map(|looks| looks.appearance(count));
         let drawn = shown.as_ref().map(|shown| shown.drawn_spheres(&loaded, self.additions.bonds.is_some()));
@@ -115,10 +116,11 @@ impl Data {
         appearance = of_rules.unwrap_or(appearance);
         let in_focus = focus.iter().flat_map(|(is_in, _)| (0..count).filter(|index| is_in[*index]));
         let in_focus: Vec<[f64; 4]> = in_focus.map(|index| loaded.spheres.at(index)).collect();
-        let is_drawn = |index: usize| shown.as_ref().is_none_or(|shown| shown.is_drawn(index));
-        if !added.is_empty() || shown.is_some() {
+        let are_drawn = drawn.as_ref().map(|drawn| &*drawn.are_drawn);
+        if !added.is_empty() || are_drawn.is_some() {
+            let is_drawn = |index: usize| are_drawn.is_none_or(|are_drawn| are_drawn[index]);
             appearance = added.extend_appearance(&appearance, count, is_drawn);
-            loaded.keep(&(0..count).map(is_drawn).collect::<Vec<_>>());
+            loaded.keep(are_drawn.unwrap_or_default());
             added.extend_array(&mut loaded.spheres);
         }
         let scene = own

@@ -50,14 +50,7 @@ impl OwnShapes {
         if self.spheres.is_empty() && self.cones.is_empty() {
             return Scene::from_shapes(spheres, sticks, appearance);
         }
-        let surface_of = |id: usize| {
-            let index = appearance.surface_indices().map_or(Some(0), |all| all.get(id).copied())?;
-            appearance.surfaces().get(index as usize).copied()
-        };
-        let look = |id: usize| {
-            let color = appearance.color(id as u32).unwrap_or(LinearRgb::WHITE);
-            (color, surface_of(id).unwrap_or_default())
-        };
+        let look = |id: usize| look_of(&appearance, id);
         let count = spheres.len();
         let of_own = self.spheres.iter().map(|sphere| (sphere.color, sphere.surface));
         let of_ends = self.cones.iter().flat_map(OwnCones::looks_of_ends);
@@ -74,6 +67,14 @@ impl OwnShapes {
         let cones: Vec<Cone> = self.cones.iter().flat_map(|own| &own.cones).chain(sticks).copied().collect();
         Scene::from_shapes(SphereArray::F64(all), &cones, Appearance::distinct(&looks))
     }
+}
+
+/// The colour and the surface properties of a shape, without the alpha of its colour.
+pub(super) fn look_of(appearance: &Appearance, id: usize) -> (LinearRgb, SurfaceProperties) {
+    let color = appearance.color(id as u32).unwrap_or(LinearRgb::WHITE);
+    let number = appearance.surface_indices().map_or(Some(0), |all| all.get(id).copied());
+    let surface = number.and_then(|number| appearance.surfaces().get(number as usize));
+    (color, surface.copied().unwrap_or_default())
 }
 
 /// A table of the list `spheres`.

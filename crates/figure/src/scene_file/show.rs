@@ -4,6 +4,7 @@ use serde::{Deserialize, Serialize};
 
 use super::data_error::DataError;
 use super::materials::{Materials, over};
+use super::shapes::look_of;
 use super::span::{KeyError, SceneFileError, positive};
 use crate::color_by::{ColorBy, ColorKey, Coloring};
 use crate::settings::places::Places;
@@ -37,7 +38,7 @@ pub struct Show {
 /// The colours of a rule.
 #[derive(Clone, Debug, PartialEq)]
 pub enum ShowColor {
-    /// The same for all.
+    /// One colour for all.
     One(LinearRgb),
     /// Those of elements.
     Elements,
@@ -145,19 +146,19 @@ pub(super) struct RuleLooks<'a> {
 /// The look of a rule.
 struct RuleLook<'a> {
     show: &'a Show,
-    color: Colors,
-    carbon: Option<(Colors, Vec<bool>)>,
+    color: Colors<'a>,
+    carbon: Option<(Colors<'a>, Vec<bool>)>,
 }
 
-enum Colors {
+enum Colors<'a> {
     AsBefore,
     One(LinearRgb),
-    Each(Vec<LinearRgb>),
+    Each(&'a [LinearRgb]),
     By(Coloring),
 }
 
-impl Colors {
-    fn new(color: &ShowColor, data: &Dataset, elements: Option<&Vec<LinearRgb>>) -> Result<Self, DataError> {
+impl<'a> Colors<'a> {
+    fn new(color: &ShowColor, data: &Dataset, elements: Option<&'a [LinearRgb]>) -> Result<Self, DataError> {
         Ok(match color {
             ShowColor::One(color) => Self::One(*color),
             ShowColor::Elements => {
@@ -165,7 +166,7 @@ impl Colors {
                 let colors = elements.filter(|_| has_elements).ok_or_else(|| {
                     DataError::NoColumn("`show`: the data has no elements that give colors; name a color".to_owned())
                 })?;
-                Self::Each(colors.clone())
+                Self::Each(colors)
             }
             ShowColor::Column(column) => Self::By(ColorBy::column(column).apply(&data.spheres, &data.columns)?),
         })
@@ -193,7 +194,7 @@ impl<'a> RuleLooks<'a> {
         shown: &'a Shown<'a>,
         data: &Dataset,
         base: &'a Appearance,
-        elements: Option<&Vec<LinearRgb>>,
+        elements: Option<&'a [LinearRgb]>,
     ) -> Result<Self, DataError> {
         let rule = |show: &'a Show| {
             let (color, carbon) = (show.color.as_ref(), show.carbon.as_ref());
@@ -242,9 +243,8 @@ impl<'a> RuleLooks<'a> {
             colors.at(index).filter(|_| is_carbon.get(index) == Some(&true))
         };
         let color = rule.and_then(|rule| of_carbon(rule).or_else(|| rule.color.at(index)));
-        let color = color.or_else(|| self.base.color(index as u32)).unwrap_or(LinearRgb::WHITE);
-        let number = self.base.surface_indices().map_or(Some(0), |all| all.get(index).copied());
-        let before = number.and_then(|number| self.base.surfaces().get(number as usize)).copied().unwrap_or_default();
+        let (color_before, before) = look_of(self.base, index);
+        let color = color.unwrap_or(color_before);
         let mut surface = rule.and_then(|rule| rule.show.surface).unwrap_or(before);
         surface.opacity = rule.and_then(|rule| rule.show.opacity).unwrap_or(surface.opacity);
         if self.shown.is_ghost(index) {

@@ -179,11 +179,15 @@ pub(super) fn show(text: &str) -> Result<String, String> {
 }
 
 pub(super) fn hide(text: &str) -> Result<String, String> {
-    Ok(format!("show = [{{ select = {}, as = \"hidden\" }}]", quoted(text)))
+    Ok(rule_of(text, "hidden"))
 }
 
 pub(super) fn ghost(text: &str) -> Result<String, String> {
-    Ok(format!("show = [{{ select = {}, as = \"ghost\" }}]", quoted(text)))
+    Ok(rule_of(text, "ghost"))
+}
+
+fn rule_of(selection: &str, style: &str) -> String {
+    format!("show = [{{ select = {}, as = {} }}]", quoted(selection), quoted(style))
 }
 
 /// Reads `NAME=SELECTION`.
