@@ -13,6 +13,7 @@ use command_line::{Arguments, Command};
 
 use crate::terminal::explain::explain;
 use crate::terminal::failure::Failure;
+use crate::terminal::habits::plain_words;
 use crate::terminal::progress::tell;
 use pinhole::internals::text::whole_line;
 
@@ -73,14 +74,21 @@ fn quieten_device_select() {
 }
 
 fn run() -> ExitCode {
-    let arguments = match Arguments::try_parse() {
+    let words = match plain_words(std::env::args_os().collect()) {
+        Ok(words) => words,
+        Err(failure) => {
+            tell(&failure);
+            return failure.exit_code();
+        }
+    };
+    let arguments = match Arguments::try_parse_from(&words) {
         Ok(arguments) => arguments,
         Err(error) => {
-            let arguments = std::env::args_os().skip(1);
-            let words: Vec<_> = arguments.map(|word| word.to_string_lossy().into()).collect();
+            let words: Vec<_> = words.iter().skip(1).map(|word| word.to_string_lossy().into()).collect();
             return explain(&error, &words);
         }
     };
+    terminal::keep_words(words);
     let result = terminal::interrupt::install().and_then(|()| execute(arguments.command));
     terminal::progress::clear();
     match result {
@@ -94,7 +102,7 @@ fn run() -> ExitCode {
 
 fn execute(command: Command) -> Result<(), Failure> {
     match command {
-        Command::Render(args) => commands::render::run(&args),
+        Command::Render(args) => commands::render::run_named(*args),
         Command::Verify(args) => proof::verify::run(&args),
         Command::Certify(args) => proof::certify::run(&args),
         #[cfg(feature = "gpu")]
@@ -116,9 +124,8 @@ fn execute(command: Command) -> Result<(), Failure> {
 /// Returns the line that the program would show, or several lines if the words are not those of a command.
 #[doc(hidden)]
 pub fn run_command(words: Vec<OsString>) -> Result<(), String> {
+    let words = plain_words(words).map_err(|failure| failure.message())?;
     let arguments = Arguments::try_parse_from(&words).map_err(|error| error.to_string())?;
-    if let Ok(mut given) = terminal::WORDS.lock() {
-        *given = words;
-    }
+    terminal::keep_words(words);
     execute(arguments.command).map_err(|failure| whole_line(&failure.message()))
 }

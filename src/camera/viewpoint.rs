@@ -8,7 +8,8 @@ use glam::{DQuat, DVec3};
 /// The direction from the scene to a camera: one side of the scene, or an azimuth and an elevation.
 ///
 /// The text is `x`, `-x`, `y`, `-y`, `z`, `-z`, `iso` (azimuth 45, elevation 35.26: all three axes are equally
-/// foreshortened), or `AZIMUTH,ELEVATION` in degrees. With +y up, the azimuth is counted from +z towards +x, and the
+/// foreshortened), a side such as `front` (azimuth 0) or `top`, a plane that is seen straight on (`xy`, `xz`, `yz`), or
+/// `AZIMUTH,ELEVATION` in degrees. With +y up, the azimuth is counted from +z towards +x, and the
 /// elevation from the horizon upwards. Molecule viewers begin with `z`.
 #[derive(Clone, Copy, Debug, PartialEq, serde::Deserialize, serde::Serialize)]
 #[serde(try_from = "String", into = "String")]
@@ -33,13 +34,27 @@ pub enum Viewpoint {
 /// An error for a text that is not a viewpoint.
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
 #[error(
-    "write x, -x, y, -y, z, -z, iso, or AZIMUTH,ELEVATION in degrees, such as 30,20, with an elevation from -90 to 90"
+    "write x, -x, y, -y, z, -z, iso, front, back, left, right, top, bottom, xy, xz, yz, or AZIMUTH,ELEVATION in degrees, \
+     such as 30,20, with an elevation from -90 to 90"
 )]
 #[non_exhaustive]
 pub struct ViewpointError;
 
 /// The names of the axes.
 const AXES: [&str; 3] = ["x", "y", "z"];
+
+/// The names of sides and planes, with the texts of the same viewpoints.
+const SIDES: [(&str, &str); 9] = [
+    ("front", "0,0"),
+    ("back", "180,0"),
+    ("left", "-90,0"),
+    ("right", "90,0"),
+    ("top", "0,90"),
+    ("bottom", "0,-90"),
+    ("xy", "z"),
+    ("xz", "-y"),
+    ("yz", "x"),
+];
 
 impl Viewpoint {
     /// An oblique view with azimuth 30 and elevation 20, which shows the shape of three-dimensional data.
@@ -112,6 +127,7 @@ impl FromStr for Viewpoint {
 
     fn from_str(text: &str) -> Result<Self, ViewpointError> {
         let text = text.trim();
+        let text = SIDES.iter().find(|(side, _)| *side == text).map_or(text, |(_, text)| text);
         if text == "iso" {
             return Ok(Self::ISOMETRIC);
         }
@@ -142,6 +158,9 @@ mod tests {
     fn texts_round_trip() {
         for text in ["x", "-x", "y", "-y", "z", "-z", "iso", "30,20", "-120.5,-90"] {
             assert_eq!(text.parse::<Viewpoint>().unwrap().to_string(), text);
+        }
+        for (name, text) in [("top", "0,90"), ("left", "-90,0"), ("xz", "-y")] {
+            assert_eq!(name.parse::<Viewpoint>().unwrap().to_string(), text);
         }
         for text in ["", "w", "--x", "30", "30,91", "nan,0", "1,2,3", "inf,0"] {
             assert_eq!(text.parse::<Viewpoint>(), Err(ViewpointError), "{text}");

@@ -79,8 +79,7 @@ impl State {
 }
 
 pub(crate) fn sides(text: &str) -> Option<[u32; 2]> {
-    let (width, height) = text.split_once(['x', 'X'])?;
-    Some([width.parse().ok()?, height.parse().ok()?])
+    pinhole_figure::settings::size_of(text).ok()
 }
 
 /// Texts that the user types, before they become flags.

@@ -31,7 +31,7 @@ pub(crate) struct BenchArgs {
     /// Format of the data files, whatever their extensions are
     #[arg(long, value_parser = format_parser())]
     pub(crate) format: Option<&'static Format>,
-    /// Radius of all spheres, for data without radii
+    /// Radius of all spheres, for atoms and data without radii
     #[arg(long, value_name = "R")]
     pub(crate) radius: Option<f64>,
     /// Measure only these acceleration structures, separated by commas

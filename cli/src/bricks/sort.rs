@@ -54,7 +54,7 @@ pub(crate) struct SortArgs {
     /// Names of the columns of a table without a header, such as x,y,z,radius
     #[arg(long, value_name = "NAMES", value_delimiter = ',')]
     columns: Vec<String>,
-    /// Radius of all spheres, for data without radii
+    /// Radius of all spheres, for atoms and data without radii
     #[arg(long, value_name = "R", allow_hyphen_values = true)]
     radius: Option<f64>,
     /// Frame of a trajectory, counted from 0 [default: 0]
@@ -142,7 +142,6 @@ fn input(args: &SortArgs) -> Result<Input, Failure> {
     let options = DataOptions {
         frame: args.frame,
         radius: args.radius,
-        color: None,
         topology: args.topology.clone(),
         columns: args.columns.clone(),
     };

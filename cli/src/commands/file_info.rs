@@ -37,7 +37,7 @@ pub(crate) struct FileArgs {
     /// Names of the columns of a table without a header, such as x,y,z,radius
     #[arg(long, value_name = "NAMES", value_delimiter = ',', requires = "path")]
     pub(crate) columns: Vec<String>,
-    /// Radius of all spheres, for data without radii
+    /// Radius of all spheres, for atoms and data without radii
     #[arg(long, value_name = "R", requires = "path", allow_hyphen_values = true)]
     pub(crate) radius: Option<f64>,
 }
@@ -58,12 +58,11 @@ fn report(args: &FileArgs, path: &Path) -> Result<Report, Failure> {
     read_file::check_regular(path)?;
     let format = match args.format {
         Some(format) => read_file::Format::Data(format),
-        None => read_file::Format::of(path).map_err(Failure::Usage)?,
+        None => read_file::Format::of(path)?,
     };
     let options = DataOptions {
         frame: args.frame,
         radius: args.radius,
-        color: None,
         topology: args.topology.clone(),
         columns: args.columns.clone(),
     };
@@ -85,7 +84,8 @@ fn of_data(path: &Path, format: &'static Format, options: &DataOptions) -> Resul
         let mut trajectory = data::trajectory(path, format, options)?;
         let problem = trajectory.problem().map(ToString::to_string);
         let frame = trajectory.frame(options.frame.unwrap_or_default());
-        let loaded = frame.map_err(|error| data::named(path, error))?;
+        let mut loaded = frame.map_err(|error| data::named(path, error))?;
+        data::give_radius(&mut loaded, options);
         (loaded, Some(trajectory.len()), problem)
     } else {
         let mut loaded = data::read(path, format, options)?;

@@ -6,7 +6,8 @@ use std::time::Instant;
 use crate::flags::common::Stereo;
 use crate::flags::render::RenderArgs;
 use crate::frames;
-use crate::input::Input;
+use crate::input::read_file::is_standard_input;
+use crate::input::{Input, extension};
 use crate::output::picture::Outputs;
 use crate::output::scene;
 use crate::proof::{certified, render_certified};
@@ -19,6 +20,41 @@ use crate::terminal::profile;
 use crate::terminal::progress::{self, answer, tell};
 use crate::terminal::threads;
 use pinhole::image::LayerSet;
+
+/// Renders into the file that the flags name, or else into one with the name of the input.
+pub(crate) fn run_named(mut args: RenderArgs) -> Result<(), Failure> {
+    if args.output.is_some() || args.report.print_scene {
+        return run(&args);
+    }
+    let path = default_output(&args)?;
+    args.output = Some(path.clone());
+    run(&args)?;
+    if !args.report.quiet {
+        tell(format_args!("wrote {}", path.display()));
+    }
+    Ok(())
+}
+
+/// The picture of a command that names none: the name of the input with .png, in the current folder.
+fn default_output(args: &RenderArgs) -> Result<PathBuf, Failure> {
+    let input = &args.input.path;
+    let no_name = |what: &str| Failure::usage(format!("{}: {what}", input.display()));
+    if args.frames.asks_for_several() || args.frames.of_writing().is_some() || args.stereo == Some(Stereo::TwoFiles) {
+        return Err(no_name("several pictures need a name; add -o f%04d.png, or -o movie.mp4"));
+    }
+    let name = input.file_stem().filter(|_| !is_standard_input(input));
+    let name = name.ok_or_else(|| no_name("the picture needs a name; add -o OUT.png"))?;
+    let is_compressed = extension(input).as_deref() == Some("gz");
+    let stem = Path::new(name).file_stem().filter(|_| is_compressed).unwrap_or(name);
+    let mut path = stem.to_os_string();
+    path.push(".png");
+    let path = PathBuf::from(path);
+    if path.exists() && input.exists() {
+        let path = path.display();
+        return Err(Failure::usage(format!("{path}: this file exists; add -o {path} to replace it, or -o OTHER.png")));
+    }
+    Ok(path)
+}
 
 pub(crate) fn run(args: &RenderArgs) -> Result<(), Failure> {
     #[cfg(feature = "gpu")]

@@ -17,8 +17,9 @@ use crate::terminal::profile::ProfileArgs;
 pub(crate) struct RenderArgs {
     #[command(flatten)]
     pub(crate) input: InputArgs,
-    /// File for the picture (.png or .exr), or - to write PNG to standard output; see also --frames
-    #[arg(short, long, value_name = "OUT.png", required_unless_present = "print_scene")]
+    /// File for the picture (.png or .exr), or - to write PNG to standard output; see also --frames [default: the name
+    /// of the input with .png, in the current folder, where no such file exists]
+    #[arg(short, long, value_name = "OUT.png")]
     pub(crate) output: Option<PathBuf>,
     #[command(flatten)]
     pub(crate) frames: FramesArgs,

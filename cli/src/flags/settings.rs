@@ -35,6 +35,11 @@ impl Given {
         self
     }
 
+    /// The flags without one of them.
+    pub(crate) fn without(&self, name: &str) -> Self {
+        Self(self.0.iter().filter(|(flag, _)| flag.name() != name).cloned().collect())
+    }
+
     /// The names of all flags, without dashes, and their values.
     pub(crate) fn all(&self) -> impl Iterator<Item = (&'static str, &str)> {
         self.0.iter().map(|(flag, value)| (flag.name(), &**value))

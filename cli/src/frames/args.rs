@@ -9,8 +9,8 @@ const HEADING: &str = "Frames and movies";
 
 #[derive(Debug, Args)]
 pub(crate) struct FramesArgs {
-    /// Frames to render, as a range like those of Python, such as : for all, 0:100:2, 5:, :10 or -1, with a pattern such
-    /// as -o f%04d.png, or a movie (.mp4, .webm, .mkv, .mov, .apng, .gif) [default for movies: all]
+    /// Frames to render, as a range like those of Python, such as all, 0:100:2, 5:, :10 or -1, with a pattern such as
+    /// -o f%04d.png, or a movie (.mp4, .webm, .mkv, .mov, .apng, .gif) [default for movies: all]
     #[arg(
         long, help_heading = HEADING, value_name = "RANGE", allow_hyphen_values = true,
         conflicts_with_all = ["frame", "turntable"]
@@ -70,7 +70,7 @@ pub(crate) enum FrameRange {
     Slice { start: Option<i64>, end: Option<i64>, step: i64 },
 }
 
-const WANTED: &str = "write START:END or START:END:STEP, such as 0:100:2, : for all, or one number; negative numbers \
+const WANTED: &str = "write START:END or START:END:STEP, such as 0:100:2, all, or one number; negative numbers \
                       count from the end, and END is excluded";
 
 impl FromStr for FrameRange {
@@ -82,6 +82,11 @@ impl FromStr for FrameRange {
             "" => Ok(None),
             text => number(text).map(Some),
         };
+        match text.trim() {
+            "all" => return Ok(Self::ALL),
+            "last" => return Ok(Self::One(-1)),
+            _ => {}
+        }
         let parts: Vec<&str> = text.split(':').collect();
         let (start, end, step) = match parts[..] {
             [one] => return number(one).map(Self::One),
@@ -225,6 +230,8 @@ mod tests {
         }
         assert_eq!(frames("-1", 5), Ok(vec![4]));
         assert_eq!(frames(" 3 ", 5), Ok(vec![3]));
+        assert_eq!(frames("last", 5), Ok(vec![4]));
+        assert_eq!(frames("all", 2), Ok(vec![0, 1]));
     }
 
     #[test]

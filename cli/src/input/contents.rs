@@ -216,6 +216,8 @@ impl Source {
         let Some(format) = self.data_format().or(named).or_else(|| data_format(&path)) else {
             let problem = if extension(&path).as_deref() == Some("toml") {
                 anyhow!("it names another scene file; name a data file")
+            } else if let Some(refused) = load::Format::refused(&path) {
+                anyhow!("{}: {refused}", path.display())
             } else {
                 anyhow!(
                     "{}: this is not the extension of a data format; a scene can use {}",

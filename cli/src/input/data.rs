@@ -9,7 +9,6 @@ use crate::flags::settings::Given;
 use crate::input::read_file::{check_regular, is_standard_input, open, read as read_bytes};
 use crate::terminal::failure::Failure;
 use crate::terminal::memory;
-use pinhole::LinearRgb;
 use pinhole_data::load::{
     ConeSet, Dataset, FORMATS, FileRows, Format, LoadError, LoadErrorKind, Options, Place, Trajectory,
 };
@@ -21,7 +20,6 @@ pub(crate) struct DataOptions {
     /// Frame of a trajectory, from 0.
     pub(crate) frame: Option<usize>,
     pub(crate) radius: Option<f64>,
-    pub(crate) color: Option<LinearRgb>,
     /// File that says what the spheres of a trajectory are.
     pub(crate) topology: Option<PathBuf>,
     pub(crate) columns: Vec<String>,
@@ -34,9 +32,11 @@ pub(crate) fn format_parser() -> impl TypedValueParser<Value = &'static Format> 
 }
 
 impl DataOptions {
-    fn to_read(&self) -> Options {
+    fn to_read(&self, format: &Format) -> Options {
         let mut options = Options::default();
-        (options.frame, options.radius) = (self.frame, self.radius);
+        // Atoms have radii, which the one for all replaces after reading.
+        let radius = self.radius.filter(|_| !is_of_atoms(format));
+        (options.frame, options.radius) = (self.frame, radius);
         (options.topology, options.columns) = (self.topology.clone(), self.columns.clone());
         options
     }
@@ -54,24 +54,18 @@ impl DataOptions {
 
     /// Refuses options that do not apply to the format. Returns the error, and whether a flag is wrong.
     pub(crate) fn check(&self, format: &Format, file: &SceneFile) -> Result<(), (String, bool)> {
-        let refused = |key: &str, rest: &str| match file.flag_of(key) {
-            Some(flag) => (format!("{flag}{rest}"), true),
-            None => (format!("{key}{rest}"), false),
-        };
-        format.check(&self.to_read()).map_err(|error| {
+        format.check(&self.to_read(format)).map_err(|error| {
             let error = error.to_string();
             // The error begins with the key.
-            let end = error.find(' ').unwrap_or(error.len());
-            refused(&error[..end], &error[end..])
-        })?;
-        if self.color.is_some() && format.has_colors {
-            return Err(refused(
-                "color",
-                " applies only to data without colors; remove it, because atoms have the colors of their elements",
-            ));
-        }
-        Ok(())
+            let (key, rest) = error.split_at(error.find(' ').unwrap_or(error.len()));
+            file.flag_of(key).map_or((error.clone(), false), |flag| (format!("{flag}{rest}"), true))
+        })
     }
+}
+
+/// Whether the radii of a format are those of atoms, and not written in the file.
+fn is_of_atoms(format: &Format) -> bool {
+    !format.may_lack_radii && (format.has_colors || format.needs_topology)
 }
 
 /// Reads spheres from a file. Of a file with frames only the one that is asked for is in memory. Errors and notes get the
@@ -81,14 +75,21 @@ pub(crate) fn read(path: &Path, format: &'static Format, options: &DataOptions) 
         true => read_frame(path, format, options)?,
         false => read_whole(path, format, options)?,
     };
-    complete_notes(&mut loaded, path, options);
+    complete(&mut loaded, path, options);
     Ok(loaded)
 }
 
-fn complete_notes(loaded: &mut Dataset, path: &Path, options: &DataOptions) {
-    if options.color.is_some() && loaded.colors.is_some() {
-        loaded.notes.push("the file gives colors; the one for all spheres is not used".to_owned());
+/// Gives all spheres the radius that is asked for.
+pub(crate) fn give_radius(loaded: &mut Dataset, options: &DataOptions) {
+    if let Some(radius) = options.radius {
+        loaded.spheres.map_radii(|_, _| radius);
+        loaded.correct_notes(false, true, |_| false);
     }
+}
+
+/// Gives all spheres the radius that is asked for, and puts the path before notes.
+fn complete(loaded: &mut Dataset, path: &Path, options: &DataOptions) {
+    give_radius(loaded, options);
     for note in &mut loaded.notes {
         *note = format!("{}: {note}", path.display());
     }
@@ -99,7 +100,7 @@ pub(crate) fn read_frame_of(path: &Path, file: &mut Trajectory, options: &DataOp
     let frame = options.frame.unwrap_or_default();
     check_frame(path, file, frame)?;
     let mut loaded = file.frame(frame).map_err(|error| named(path, error))?;
-    complete_notes(&mut loaded, path, options);
+    complete(&mut loaded, path, options);
     Ok(loaded)
 }
 
@@ -107,7 +108,7 @@ pub(crate) fn read_frame_of(path: &Path, file: &mut Trajectory, options: &DataOp
 fn read_frame(path: &Path, format: &'static Format, options: &DataOptions) -> Result<Dataset> {
     check_regular(path)?;
     let frame = options.frame.unwrap_or_default();
-    let options = options.to_read().with_format(format);
+    let options = options.to_read(format).with_format(format);
     let found = Trajectory::open_up_to(path, &options).map_err(|error| named(path, error))?;
     check_frame(path, &found, frame)?;
     found.into_frame(frame).map_err(|error| named(path, error))
@@ -116,7 +117,7 @@ fn read_frame(path: &Path, format: &'static Format, options: &DataOptions) -> Re
 /// Finds all frames of a file, and checks that there is memory for the one that is asked for.
 pub(crate) fn trajectory(path: &Path, format: &'static Format, options: &DataOptions) -> Result<Trajectory> {
     check_regular(path)?;
-    let all = options.to_read().with_format(format);
+    let all = options.to_read(format).with_format(format);
     let found = Trajectory::open(path, &all).map_err(|error| named(path, error))?;
     check_frame(path, &found, options.frame.unwrap_or_default())?;
     Ok(found)
@@ -140,7 +141,7 @@ pub(crate) fn named(path: &Path, error: LoadError) -> Error {
 fn read_whole(path: &Path, format: &Format, options: &DataOptions) -> Result<Dataset> {
     let file_name = || path.display().to_string();
     if !is_standard_input(path) {
-        let (file, options) = (open(path)?, options.to_read());
+        let (file, options) = (open(path)?, options.to_read(format));
         if let Some(rows) = FileRows::find(format, &file, &options).with_context(file_name)? {
             memory::check_spheres(&format!("{}: its spheres need", path.display()), rows.bytes())?;
             return rows.read().with_context(file_name);
@@ -152,7 +153,7 @@ fn read_whole(path: &Path, format: &Format, options: &DataOptions) -> Result<Dat
         let what = format!("{}: reading an array of {extra} bytes needs", path.display());
         memory::check_reading(&what, extra)?;
     }
-    format.read(bytes, &options.to_read()).with_context(file_name)
+    format.read(bytes, &options.to_read(format)).with_context(file_name)
 }
 
 /// Reads a file of cylinders or cones. An error has the path in front.

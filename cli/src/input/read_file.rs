@@ -7,6 +7,7 @@ use std::path::Path;
 use anyhow::{Context, Result, bail};
 
 use crate::bricks::EXTENSION;
+use crate::terminal::failure::Failure;
 use crate::terminal::memory;
 use pinhole_data::load;
 
@@ -98,8 +99,15 @@ pub(crate) enum Format {
 }
 
 impl Format {
-    /// Returns the format for the extension of a path.
-    pub(crate) fn of(path: &Path) -> Result<Self> {
+    /// Returns the format for the extension of a path, or the failure of a file that is missing or of another kind.
+    pub(crate) fn of(path: &Path) -> Result<Self, Failure> {
+        Self::of_name(path).map_err(|wrong| match is_standard_input(path) {
+            true => Failure::Usage(wrong),
+            false => open(path).map_or_else(Failure::Job, |_| Failure::Usage(wrong)),
+        })
+    }
+
+    fn of_name(path: &Path) -> Result<Self> {
         let extension = extension(path);
         match (data_format(path), extension.as_deref()) {
             (_, Some(EXTENSION)) => Ok(Self::Bricks),
@@ -113,12 +121,15 @@ impl Format {
                  little-endian f32, add --format raw-f32x4",
                 path.display()
             ),
-            _ => bail!(
-                "{}: this is not the extension of a format that can be read; use .toml (scene), \
-                 {} (data), or .bin with --format raw-f32x4, or name the format of a data file with --format",
-                path.display(),
-                load::Format::extensions_of(|_| true)
-            ),
+            _ => match load::Format::refused(path) {
+                Some(refused) => bail!("{}: {refused}", path.display()),
+                None => bail!(
+                    "{}: this is not the extension of a format that can be read; use .toml (scene), \
+                     {} (data), or .bin with --format raw-f32x4, or name the format of a data file with --format",
+                    path.display(),
+                    load::Format::extensions_of(|_| true)
+                ),
+            },
         }
     }
 }

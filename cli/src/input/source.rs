@@ -9,6 +9,7 @@ use anyhow::{Error, Result};
 use crate::bench::args::BenchArgs;
 use crate::bricks::BrickFile;
 use crate::flags::settings::Given;
+use crate::frames::args::FrameRange;
 use crate::input::data::{self, DataOptions};
 use crate::input::read_file::{Format, check_regular, data_format};
 use crate::output::picture::PictureFormat;
@@ -48,13 +49,21 @@ pub(crate) struct Source {
 
 impl Source {
     /// Makes a source from a path and its flags. Data files have one ray for each pixel, unless a flag asks for another
-    /// style.
+    /// style. A frame that counts from the end is found.
     pub(crate) fn new(path: &Path, given: &Given) -> Result<Self, Failure> {
+        let from_end = given.get("frame").and_then(|frame| frame.parse::<FrameRange>().ok());
+        if let Some(last @ FrameRange::One(..0)) = from_end {
+            let wrong = |error: String| Failure::usage(format!("--frame: {error}; choose another, or remove it"));
+            let given = given.without("frame");
+            let found = Self::new(path, &given)?.open_frames()?.map_err(wrong)?;
+            let frame = last.of(found.count).map_err(wrong)?.first().map(ToString::to_string);
+            return Self::new(path, &given.with("frame", frame));
+        }
         check_regular(path)?;
         let named = given.get("format").and_then(load::Format::of_name);
         let format = match named {
             Some(format) => Format::Data(format),
-            None => Format::of(path).map_err(Failure::Usage)?,
+            None => Format::of(path)?,
         };
         let bricks = (format == Format::Bricks).then(|| BrickFile::open(path)).transpose()?;
         let layers = given.layers()?;
@@ -169,13 +178,7 @@ impl Source {
             Some(_) => PathBuf::from(name),
             None => self.resolve(name),
         });
-        DataOptions {
-            frame: self.frame.or(data.frame),
-            radius: data.radius,
-            color: data.color,
-            topology,
-            columns: data.columns.clone(),
-        }
+        DataOptions { frame: self.frame.or(data.frame), radius: data.radius, topology, columns: data.columns.clone() }
     }
 
     /// Returns the data with its keys and paths as the program finds them.

@@ -41,7 +41,9 @@ pub(crate) enum JobCommand {
 
 #[derive(Debug, Args)]
 #[command(
-    mut_arg("output", |arg| arg.value_name("JOB/").help("Folder of the job, which is created and must not exist")),
+    mut_arg("output", |arg| {
+        arg.required(true).value_name("JOB/").help("Folder of the job, which is created and must not exist")
+    }),
     mut_arg("layers", |arg| arg.value_name("LAYER").help(
         "Data layer that `merge` can write in addition: alpha, depth, normal, position, albedo, id, samples or \
          variance; may be repeated"

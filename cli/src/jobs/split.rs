@@ -32,7 +32,7 @@ struct JobInput {
 pub(super) fn run(args: &SplitArgs) -> Result<(), Failure> {
     refuse(args)?;
     let asked = asked_layers(&args.render.layers)?;
-    // clap requires it unless --print-scene is given, which is refused.
+    // clap requires it.
     let job = args.render.output.clone().unwrap_or_default();
     let job: PathBuf = job.components().collect();
     let above = check_new(&job)?;

@@ -217,11 +217,18 @@ fn format_of(path: &Path) -> Result<PictureFormat, Failure> {
     let format = match extension(path).as_deref() {
         Some("png") => PictureFormat::Png,
         Some("exr") => PictureFormat::Exr,
-        _ => {
-            return Err(Failure::usage(format!(
-                "{}: a picture is written as .png or .exr; change the extension",
-                path.display()
-            )));
+        other => {
+            let png = path.with_extension("png");
+            let (name, png) = (path.display(), png.display());
+            let remedy = match other {
+                Some("jpg" | "jpeg" | "tif" | "tiff" | "bmp" | "webp") => {
+                    format!("write {png}, and then: magick {png} {name}")
+                }
+                Some("pdf" | "svg" | "eps") => format!("write {png} with --dpi 300"),
+                Some("avi" | "mpg" | "mpeg" | "wmv") => "for a movie, take .mp4, .webm, .apng or .gif".to_owned(),
+                _ => "change the extension".to_owned(),
+            };
+            return Err(Failure::usage(format!("{name}: a picture is written as .png or .exr; {remedy}")));
         }
     };
     check_writable(path)?;

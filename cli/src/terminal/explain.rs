@@ -155,11 +155,11 @@ mod tests {
     #[test]
     fn a_flag_that_is_not_known_gets_a_useful_hint() {
         for (line, hint) in [
-            ("render a.xyz --colour red", "did you mean --color?"),
+            ("render a.xyz --colours red", "did you mean --color?"),
             ("render a.xyz --Colour-by x", "did you mean --color-by?"),
             ("render a.xyz --sampels=4", "did you mean --samples?"),
             ("render a.xyz --lable b", "did you mean --label?"),
-            ("render a.xyz --width 5", "`pinhole render --help` lists the flags"),
+            ("render a.xyz --blur 5", "`pinhole render --help` lists the flags"),
             ("render a.xyz -z", "`pinhole render --help` lists the flags"),
             ("info a.xyz --color red", "it is a flag of `render`, `verify`"),
             (

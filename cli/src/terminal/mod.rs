@@ -5,6 +5,7 @@ use std::sync::Mutex;
 
 pub(crate) mod explain;
 pub(crate) mod failure;
+pub(crate) mod habits;
 pub(crate) mod interrupt;
 pub(crate) mod memory;
 #[cfg(feature = "gpu")]
@@ -13,13 +14,19 @@ pub(crate) mod progress;
 pub(crate) mod text;
 pub(crate) mod threads;
 
-/// The words of a command that another program runs in its own process.
-pub(crate) static WORDS: Mutex<Vec<OsString>> = Mutex::new(Vec::new());
+/// The words of the command line as clap parsed them, with the name of the program.
+static WORDS: Mutex<Vec<OsString>> = Mutex::new(Vec::new());
 
-/// The words of the command line, with the name of the program: [`WORDS`], or else those of the process.
+/// The words of the command line as clap parsed them, with the name of the program.
 pub(crate) fn words() -> Vec<OsString> {
-    let given = WORDS.lock().map(|words| words.clone()).unwrap_or_default();
-    if given.is_empty() { std::env::args_os().collect() } else { given }
+    WORDS.lock().map(|words| words.clone()).unwrap_or_default()
+}
+
+/// Keeps the words of the command line for [`words`].
+pub(crate) fn keep_words(words: Vec<OsString>) {
+    if let Ok(mut kept) = WORDS.lock() {
+        *kept = words;
+    }
 }
 
 /// Without devices, phases are not measured.

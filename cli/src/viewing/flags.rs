@@ -13,6 +13,7 @@ use crate::commands::render;
 use crate::flags::render::{RenderArgs, RenderCommand, RenderLine};
 use crate::render::Job;
 use crate::terminal::explain::{explain, one_message};
+use crate::terminal::habits::plain_words;
 use crate::terminal::text::in_quotes;
 use pinhole_figure::settings::flags::{Flag, Group};
 
@@ -66,7 +67,8 @@ impl RenderFlags {
         let mut program = Arguments::command();
         program.build();
         let start = ["pinhole", "view"].map(OsString::from);
-        let words: Vec<OsString> = start.into_iter().chain(words).collect();
+        let words = plain_words(start.into_iter().chain(words).collect());
+        let words = words.map_err(|failure| Refusal::Other(failure.into()))?;
         let matches = program.clone().try_get_matches_from(&words).map_err(Refusal::Clap)?;
         let (Some(matches), Some(view)) = (matches.subcommand_matches("view"), program.find_subcommand("view")) else {
             return Err(Refusal::Other(ViewError::usage("there is nothing to show; name a file")));
@@ -310,7 +312,7 @@ mod tests {
             &["a.pdb", "--styel", "path"][..],
             &["a.pdb", "--style", "no"],
             &["a.pdb", "--size", "x"],
-            &["a.unknown"],
+            &["src/lib.rs"],
             &["-"],
             &["a.pdb", "--eye", "1,2"],
             &["a.pdb", "-o", "a.png"],

@@ -14,6 +14,7 @@ mod certify;
 mod cones;
 mod data;
 mod frames;
+mod habits;
 mod input;
 mod interrupt;
 #[cfg(unix)]

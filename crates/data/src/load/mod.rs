@@ -26,6 +26,7 @@ mod formats;
 mod labels;
 mod numbers;
 mod open;
+mod refused;
 mod rows;
 mod source;
 mod spacing;

@@ -24,11 +24,11 @@ pub struct Data {
     pub topology: Option<String>,
     /// Names of the columns of a table without a header.
     pub columns: Vec<String>,
-    /// Radius of all spheres, for data without radii.
+    /// Radius of all spheres, for atoms and data without radii.
     pub radius: Option<f64>,
     /// Factor for every radius.
     pub radius_scale: f64,
-    /// Colour of all spheres, for data without colours.
+    /// Colour of all spheres, in the place of those of the data.
     pub color: Option<LinearRgb>,
     /// Surface properties of all spheres, unless `elements` says otherwise.
     pub surface: SurfaceProperties,

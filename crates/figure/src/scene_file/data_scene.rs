@@ -60,7 +60,8 @@ impl Data {
         let has_radii = self.mapping.radius.is_some();
         let by_species = self.elements_by.is_empty() || self.elements_by.iter().any(|column| column == "species");
         let is_given = |name: &str| by_species && self.elements.iter().any(|e| e.name == name);
-        loaded.correct_notes(self.mapping.color.is_some(), has_radii, is_given);
+        let has_colors = self.color.is_some() || self.mapping.color.is_some();
+        loaded.correct_notes(has_colors, has_radii, is_given);
         let absent = self.absent_elements(&loaded)?;
         let left_out = self.leave_out(&mut loaded)?;
         let rules: Vec<ShowRule> = self.shows.iter().map(|show| show.rule.clone()).collect();
@@ -140,7 +141,7 @@ impl Data {
     fn colors(&self, own: Option<Vec<LinearRgb>>, elements: &[u32], count: usize) -> Colors {
         let color = self.color.unwrap_or(LinearRgb::from_srgb8(DEFAULT_COLOR));
         let of_element = |number: &u32| self.element(*number)?.color;
-        let mut colors = own;
+        let mut colors = own.filter(|_| self.color.is_none());
         if self.elements.iter().any(|element| element.color.is_some()) {
             let all = colors.get_or_insert_with(|| vec![color; count]);
             for (own, number) in all.iter_mut().zip(elements) {

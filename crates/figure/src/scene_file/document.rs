@@ -54,11 +54,11 @@ pub(crate) struct Document {
     pub(super) topology: Option<String>,
     /// Names of the columns of a table without a header.
     pub(super) columns: Option<Vec<String>>,
-    /// Radius of all spheres in scene units, for data without radii: greater than 0.
+    /// Radius of all spheres in scene units, for atoms and data without radii: greater than 0.
     pub(super) radius: Option<f64>,
     /// Factor of every radius: greater than 0.
     pub(super) radius_scale: Option<f64>,
-    /// Colour of all spheres, for data without colours.
+    /// Colour of all spheres of the data, in the place of those of the data.
     pub(super) color: Option<LinearRgb>,
     /// The name of the material of all spheres of the data.
     pub(super) material: Option<String>,

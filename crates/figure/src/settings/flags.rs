@@ -178,13 +178,14 @@ flags! {
         "--columns" "columns", Words(words::names), "NAMES",
             "Names of the columns of a table without a header, such as x,y,z,radius";
         "--radius" "radius", Number, "R",
-            "Radius of all spheres, for data without radii";
+            "Radius of all spheres, for atoms and data without radii";
         "--color" "color", Text, "CSS",
-            "CSS color of all spheres, for data without colors [default: the scene's, or #cccccc]";
-        "--frame" "frame", Whole, "N",
-            "Frame of a trajectory, counted from 0 [default: the scene's, or 0]";
+            "CSS color of all spheres, or a column as for --color-by [default: the data's, the scene's, or #cccccc]";
+        "--frame" "frame", Words(words::frame), "N",
+            "Frame of a trajectory, counted from 0, or last; negative numbers count from the end [default: the scene's, or 0]";
         "--size" "film.width", Keys(words::size), "WxH",
-            "Width and height of the picture in pixels, such as 800x600 [default: the scene's, or 800x600]";
+            "Width and height of the picture in pixels, such as 800x600, or the width of a picture that is three quarters as \
+             high [default: the scene's, or 800x600]";
         "--set" "", Keys(words::set), "KEY=VALUE",
             "Give any key of a scene file a value, such as studio.occlusion.radius=5; takes precedence over all else, and \
              may be repeated";
@@ -199,8 +200,9 @@ flags! {
         "--direction" "camera.*.direction", Numbers(3), "X,Y,Z",
             "Direction in which the camera looks, instead of --look-at [default without --eye: 0,0,-1]";
         "--view" "camera.*.view", Words(words::view), "VIEW",
-            "Where the camera stands when it frames the scene: x, -x, y, -y, z, -z, iso, or AZIMUTH,ELEVATION in degrees \
-             [default for data files: 30,20, or straight on where all spheres lie in one plane]";
+            "Where the camera stands when it frames the scene: x, -x, y, -y, z, -z, iso, front, back, left, right, top, \
+             bottom, or AZIMUTH,ELEVATION in degrees; xy, xz and yz show a plane straight on [default for data files: \
+             30,20, or straight on where all spheres lie in one plane]";
         "--turn" "camera.*.turn", Number, "DEGREES",
             "Turn the camera about the direction that is up, by this angle in degrees; counter-clockwise seen from above";
         "--margin" "camera.*.margin", Words(words::part), "PART",
@@ -287,6 +289,10 @@ flags! {
             "CSS color of spheres without a value [default: #808080]";
         "--radius-by" "radius_by", Words(words::with_factor), "COLUMN[*F]",
             "Take the radii from a column of the data, which may be followed by a factor, such as diameter*0.5";
+        "--radius-scale" "radius_scale", Number, "FACTOR",
+            "Multiply all radii by this factor";
+        "--opacity" "opacity", Number, "PART",
+            "Opacity of all spheres, from 0 (clear) to 1 (opaque)";
         "--opacity-by" "opacity_by", Text, "COLUMN",
             "Take the opacities from a column of the data, from 0 (clear) to 1 (opaque)";
         "--emission-by" "emission_by", Words(words::with_factor), "COLUMN[*F]",

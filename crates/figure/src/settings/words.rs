@@ -44,6 +44,11 @@ pub(super) fn whole(text: &str) -> Result<String, String> {
     number.map(|number| number.to_string()).map_err(|_| "write a whole number".to_owned())
 }
 
+/// Reads the number of a frame, or `last`.
+pub(super) fn frame(text: &str) -> Result<String, String> {
+    if text == "last" { Ok("-1".to_owned()) } else { whole(text) }
+}
+
 pub(super) fn switch(text: &str) -> Result<String, String> {
     match text {
         "true" | "false" => Ok(text.to_owned()),
@@ -77,13 +82,15 @@ pub(super) fn size(text: &str) -> Result<String, String> {
     Ok(format!("film.width = {width}\nfilm.height = {height}"))
 }
 
-/// Reads a size such as `800x600`.
+/// Reads a size such as `800x600` or `800,600`, or the width of a picture that is three quarters as high.
 ///
 /// # Errors
 /// Says in words what to write.
 pub fn size_of(text: &str) -> Result<[u32; 2], String> {
-    let sides = text.split_once(['x', 'X']);
-    let sides = sides.and_then(|(w, h)| Some([w.parse::<u32>().ok()?, h.parse::<u32>().ok()?]));
+    let sides = match text.split_once(['x', 'X', ',']) {
+        Some((width, height)) => width.parse().ok().zip(height.trim().parse().ok()).map(|(w, h)| [w, h]),
+        None => text.parse().ok().map(|width: u32| [width, (width - width / 4).max(1)]),
+    };
     sides.ok_or_else(|| "write WIDTHxHEIGHT in pixels, such as 800x600".to_owned())
 }
 
@@ -131,7 +138,12 @@ pub(super) fn cell(text: &str) -> Result<String, String> {
 pub(super) fn bonds(text: &str) -> Result<String, String> {
     match text {
         "" => Ok("true".to_owned()),
-        factor => positive(factor),
+        factor => {
+            let factor = positive(factor)?;
+            let is_length = factor.parse::<f64>().is_ok_and(|factor| factor > 1.5);
+            let remedy = || format!("this is a factor of covalent radii, at most 1.5; a length: --bond-length {text}");
+            if is_length { Err(remedy()) } else { Ok(factor) }
+        }
     }
 }
 

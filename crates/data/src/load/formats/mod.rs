@@ -311,7 +311,7 @@ impl Format {
     /// Returns the format of a file by its extension or else by its first bytes.
     pub(super) fn of_file(path: &Path, first: &[u8]) -> Result<&'static Self, LoadError> {
         let format = Self::of_file_name(path).or_else(|| Self::of_content(first));
-        format.ok_or_else(Self::unknown)
+        format.ok_or_else(|| Self::refused(path).unwrap_or_else(Self::unknown))
     }
 
     /// The error of a file whose format neither the name nor the content shows.

@@ -1,0 +1,422 @@
+//! Habits of people who use other programs. Before clap parses the words of a command line, values after a blank are
+//! joined to their flags, other names of flags are replaced, and a file alone is rendered.
+
+use std::collections::VecDeque;
+use std::ffi::{OsStr, OsString};
+use std::path::Path;
+
+use clap::{Arg, Command, CommandFactory};
+use strsim::normalized_levenshtein;
+
+use self::asked::Asked;
+use crate::command_line::Arguments;
+use crate::terminal::failure::Failure;
+use crate::terminal::text::in_quotes;
+use pinhole_data::css;
+use pinhole_data::load::Format;
+use pinhole_figure::settings::flags::{Flag, Value};
+
+mod asked;
+
+/// Other names of flags.
+const SAME: &[(&str, &str)] = &[
+    ("bg", "background"),
+    ("colorbar", "legend"),
+    ("colour", "color"),
+    ("only", "select"),
+    ("out", "output"),
+    ("scale", "radius-scale"),
+];
+
+/// Flags that are short for a value of another one.
+const SHORT: &[(&str, &str)] = &[
+    ("clip", "select"),
+    ("every", "frames"),
+    ("exclude", "select"),
+    ("height", "size"),
+    ("ortho", "camera"),
+    ("slice", "select"),
+    ("title", "label"),
+    ("vmax", "range"),
+    ("vmin", "range"),
+    ("width", "size"),
+];
+
+/// Flags with a selection, which has blanks.
+const SELECTIONS: [&str; 6] = ["select", "focus", "show", "hide", "ghost", "define"];
+
+/// Frequent colors, to tell a misspelt one from a column.
+const COLORS: [&str; 13] = [
+    "black",
+    "white",
+    "gray",
+    "grey",
+    "green",
+    "yellow",
+    "orange",
+    "purple",
+    "brown",
+    "tomato",
+    "steelblue",
+    "skyblue",
+    "lightgray",
+];
+
+/// The words that clap parses, for the words that a user typed. The first is the name of the program.
+///
+/// # Errors
+/// Says what to type in the place of words that have no meaning.
+pub(crate) fn plain_words(words: Vec<OsString>) -> Result<Vec<OsString>, Failure> {
+    let program = Arguments::command();
+    let mut rest = VecDeque::from(words);
+    let mut plain: Vec<OsString> = rest.pop_front().into_iter().collect();
+    let mut command = &program;
+    while let Some(inner) = rest.front().and_then(|word| command.find_subcommand(word)) {
+        command = inner;
+        plain.extend(rest.pop_front());
+    }
+    if command.has_subcommands() {
+        let render = program.find_subcommand("render").filter(|render| {
+            let is_first = plain.len() == 1;
+            is_first && rest.front().is_some_and(|word| is_for(render, word))
+        });
+        let Some(render) = render else {
+            plain.extend(rest);
+            return Ok(plain);
+        };
+        plain.push("render".into());
+        command = render;
+    }
+    Reader { command, rest, plain, files: Vec::new(), doubtful: Vec::new(), asked: Asked::default() }.read()
+}
+
+/// Whether a word that is not the name of a command may be a file or a flag for this command.
+fn is_for(command: &Command, word: &OsStr) -> bool {
+    let text = word.to_string_lossy();
+    match text.strip_prefix('-') {
+        Some(flag) => {
+            let name = flag.trim_start_matches('-').split('=').next().unwrap_or_default();
+            let is_other = |(other, _): &(&str, &str)| *other == name;
+            name.starts_with("no-")
+                || command.get_arguments().any(|arg| arg.get_long() == Some(name) || is_short(arg, &text))
+                || SAME.iter().chain(SHORT).any(is_other)
+        }
+        None => text.contains(['.', '/', '\\']) || Path::new(word).is_file(),
+    }
+}
+
+fn is_short(arg: &Arg, word: &str) -> bool {
+    arg.get_short().is_some_and(|short| word.strip_prefix('-') == Some(short.encode_utf8(&mut [0; 4])))
+}
+
+/// Reads words one by one.
+struct Reader<'a> {
+    command: &'a Command,
+    rest: VecDeque<OsString>,
+    plain: Vec<OsString>,
+    /// The places in `plain` of words that belong to no flag.
+    files: Vec<usize>,
+    /// Values of flags that need none: their places in `plain`. If nothing else is the file, one of them is.
+    doubtful: Vec<usize>,
+    asked: Asked,
+}
+
+impl Reader<'_> {
+    fn read(mut self) -> Result<Vec<OsString>, Failure> {
+        while let Some(word) = self.rest.pop_front() {
+            if word == "--" {
+                let start = self.plain.len() + 1;
+                self.files.extend((0..self.rest.len()).map(|place| start + place));
+                self.rest.push_front(word);
+                break;
+            }
+            match word.to_str() {
+                Some(text) if text.len() > 2 && text.starts_with("--") => self.flag(&text[2..])?,
+                _ => self.other(word),
+            }
+        }
+        self.give_back_file();
+        self.name_topology();
+        let asked = std::mem::take(&mut self.asked);
+        for (name, value) in asked.flags(|name| self.taken(name))? {
+            self.give(name, &value);
+        }
+        self.plain.extend(self.rest);
+        Ok(self.plain)
+    }
+
+    /// Takes a word that is no long flag: a file, or a flag of one letter with its value.
+    fn other(&mut self, word: OsString) {
+        let text = word.to_string_lossy().into_owned();
+        self.plain.push(word);
+        let needs_value = |arg: &&Arg| is_short(arg, &text) && arg.get_action().takes_values();
+        if self.command.get_arguments().any(|arg| needs_value(&arg)) {
+            self.plain.extend(self.rest.pop_front());
+        } else if !text.starts_with('-') || text == "-" {
+            self.files.push(self.plain.len() - 1);
+        }
+    }
+
+    fn find(&self, name: &str) -> Option<&Arg> {
+        self.command.get_arguments().find(|arg| arg.get_long() == Some(name))
+    }
+
+    fn flag(&mut self, text: &str) -> Result<(), Failure> {
+        let (name, value) = text.split_once('=').map_or((text, None), |(name, value)| (name, Some(value)));
+        let other = SAME.iter().find(|(other, _)| *other == name).map(|(_, name)| *name);
+        let name = if self.find(name).is_some() { name } else { other.unwrap_or(name) };
+        if self.find(name).is_some() {
+            return self.own(name, value);
+        }
+        let is_switch = |flag: &Flag| matches!(flag.value, Value::Switch) && self.find(flag.name()).is_some();
+        if let Some(flag) = name.strip_prefix("no-").and_then(Flag::of_name).filter(|flag| is_switch(flag)) {
+            self.give(flag.name(), "false");
+            return Ok(());
+        }
+        let Some((_, of)) = SHORT.iter().find(|(short, of)| *short == name && self.find(of).is_some()) else {
+            self.plain.push(format!("--{text}").into());
+            return Ok(());
+        };
+        if name == "ortho" {
+            self.give(of, "orthographic");
+            return Ok(());
+        }
+        let value = value.map(str::to_owned).or_else(|| self.rest.pop_front()?.into_string().ok());
+        let value = value.ok_or_else(|| Failure::usage(format!("--{name} needs a value")))?;
+        match name {
+            "title" => self.give(of, &format!("{value}@top")),
+            "clip" => return Err(Failure::usage("--clip: spheres are not cut; --select 'x < 5' keeps a part")),
+            "exclude" => {
+                self.check_quotes(name, &value)?;
+                self.asked.take(name, value)?;
+            }
+            _ => self.asked.take(name, value)?,
+        }
+        Ok(())
+    }
+
+    /// Takes a flag of the command, with its value.
+    fn own(&mut self, name: &str, value: Option<&str>) -> Result<(), Failure> {
+        let may_be_value = |word: &OsStr, arg: &Arg| {
+            let has_hyphen = word.as_encoded_bytes().starts_with(b"-") && word != "-";
+            match arg.is_require_equals_set() {
+                true => !has_hyphen && !Path::new(word).is_file(),
+                false => !has_hyphen || arg.is_allow_hyphen_values_set(),
+            }
+        };
+        let arg = self.find(name).filter(|arg| arg.get_action().takes_values());
+        let is_doubtful = value.is_none() && arg.is_some_and(Arg::is_require_equals_set);
+        let follows = arg.is_some_and(|arg| self.rest.front().is_some_and(|word| may_be_value(word, arg)));
+        let value = match value {
+            Some(value) => Some(value.into()),
+            None if follows => self.rest.pop_front(),
+            None => None,
+        };
+        let flag = format!("--{name}");
+        let Some(value) = value else {
+            self.plain.push(flag.into());
+            return Ok(());
+        };
+        let Some(text) = value.to_str() else {
+            self.plain.extend([flag.into(), value]);
+            return Ok(());
+        };
+        let text = self.joined(name, text);
+        if SELECTIONS.contains(&name) {
+            self.check_quotes(name, &text)?;
+        }
+        if is_doubtful {
+            self.doubtful.push(self.plain.len());
+        }
+        // A name that is not a color is a column, unless it is nearly one.
+        let is_color =
+            || css::color(&text).is_ok() || COLORS.iter().any(|color| normalized_levenshtein(color, &text) > 0.7);
+        let is_column = name == "color" && self.find("color-by").is_some() && !is_color();
+        self.give(if is_column { "color-by" } else { name }, &text);
+        Ok(())
+    }
+
+    fn give(&mut self, name: &str, value: &str) {
+        self.plain.push(format!("--{name}={value}").into());
+    }
+
+    /// Joins numbers that follow a number, for a flag that takes several: `--range 0 50` is `--range 0,50`.
+    fn joined(&mut self, name: &str, first: &str) -> String {
+        let Some(flag) = Flag::of_name(name) else { return first.to_owned() };
+        let most = match flag.value {
+            Value::Numbers(count) => count,
+            _ if ["range", "size", "view"].contains(&name) => 2,
+            _ => 1,
+        };
+        let is_number = |text: &str| text.trim_end_matches('%').parse::<f64>().is_ok();
+        let rest = self.rest.iter().map_while(|word| word.to_str());
+        let rest = rest.take_while(|word| is_number(word) && !Path::new(word).is_file());
+        let numbers: Vec<&str> = [first].into_iter().chain(rest).take(most).collect();
+        let text = numbers.join(",");
+        if most == 1 || numbers.len() < most || !is_number(first) || flag.layer(&text, "pinhole").is_err() {
+            return first.to_owned();
+        }
+        self.rest.drain(..most - 1);
+        text
+    }
+
+    /// Refuses a selection that goes on after its first word, because a shell divided it.
+    fn check_quotes(&self, name: &str, first: &str) -> Result<(), Failure> {
+        let is_file = |word: &OsString| Path::new(word).is_file();
+        let is_bare = |word: &OsString| !word.as_encoded_bytes().starts_with(b"-") && !is_file(word);
+        let bare: Vec<_> =
+            self.rest.iter().take_while(|word| is_bare(word)).map(|word| word.to_string_lossy()).collect();
+        let mut pairs = self.rest.iter().zip(self.rest.iter().skip(1));
+        let follows_flag = |before: &OsString| before.as_encoded_bytes().starts_with(b"-");
+        // A word alone may be a file that does not exist.
+        let is_file_elsewhere =
+            !self.files.is_empty() || pairs.any(|(before, word)| is_file(word) && !follows_flag(before));
+        let Some(word) = bare.first().filter(|_| is_file_elsewhere || bare.len() > 1) else { return Ok(()) };
+        let whole = in_quotes(&format!("{first} {}", bare.join(" ")));
+        Err(Failure::usage(format!("`{word}` is no file; quote it: --{name} {whole}")))
+    }
+
+    /// If no other word is the file, turns the value of a flag that needs none into it.
+    fn give_back_file(&mut self) {
+        if !self.files.is_empty() || self.command.get_positionals().next().is_none() {
+            return;
+        }
+        let parts = |place: &usize| {
+            let text = self.plain.get(*place)?.to_str()?;
+            let (flag, value) = text.split_once('=')?;
+            Some((*place, flag.to_owned(), value.to_owned()))
+        };
+        let all: Vec<_> = self.doubtful.iter().filter_map(parts).collect();
+        let fits = |name: &str, value: &str| {
+            Flag::of_name(name.trim_start_matches('-')).is_some_and(|flag| flag.layer(value, "pinhole").is_ok())
+        };
+        let unfit = all.iter().rev().find(|(_, flag, value)| !fits(flag, value));
+        if let Some((place, flag, value)) = unfit.or(all.last()) {
+            self.plain[*place] = flag.into();
+            self.plain.insert(*place + 1, value.into());
+        }
+    }
+
+    /// Of two files, the one beside a trajectory of positions alone is its topology.
+    fn name_topology(&mut self) {
+        let &[first, second] = &self.files[..] else { return };
+        let has_topology = |word: &OsString| word.to_str().is_some_and(|word| word.starts_with("--topology"));
+        if self.find("topology").is_none() || self.plain.iter().any(has_topology) {
+            return;
+        }
+        let needs_it = |place: usize| {
+            let format = self.plain.get(place).and_then(|word| Format::of_path(Path::new(word)).ok()?);
+            format.is_some_and(|format| format.needs_topology)
+        };
+        let place = match [first, second].map(needs_it) {
+            [true, false] => second,
+            [false, true] => first,
+            _ => return,
+        };
+        if let Some(word) = self.plain.get_mut(place).filter(|word| word.to_str().is_some()) {
+            *word = format!("--topology={}", word.to_string_lossy()).into();
+        }
+    }
+
+    /// The value of a flag that was given before, which is taken away.
+    fn taken(&mut self, name: &str) -> Option<String> {
+        let start = format!("--{name}=");
+        let place = self.plain.iter().position(|word| word.to_str().is_some_and(|word| word.starts_with(&start)))?;
+        Some(self.plain.remove(place).to_str()?[start.len()..].to_owned())
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// The only file that exists here is `Cargo.toml`.
+    fn plain(line: &str) -> Result<String, String> {
+        let words = ["pinhole"].into_iter().chain(line.split(' ')).map(|word| word.replace('_', " ").into());
+        let words = plain_words(words.collect()).map_err(|failure| failure.message())?;
+        let words: Vec<String> = words[1..].iter().map(|word| word.to_string_lossy().replace(' ', "_")).collect();
+        Ok(words.join(" "))
+    }
+
+    #[test]
+    fn values_follow_a_blank() {
+        for (line, expected) in [
+            ("render a.xyz --bonds 1.2 --legend top-right", "render a.xyz --bonds=1.2 --legend=top-right"),
+            ("render --box 0.5 --ao 8 a.xyz --scale-bar 20_Å", "render --box=0.5 --ao=8 a.xyz --scale-bar=20_Å"),
+            ("render --box Cargo.toml -o b.png", "render --box Cargo.toml -o b.png"),
+            ("render --box gone.pdb -o b.png", "render --box gone.pdb -o b.png"),
+            ("render --bonds 1.1 --scale-bar nm", "render --bonds=1.1 --scale-bar nm"),
+            ("render --scale-bar gone.pdb --bonds 1.1", "render --scale-bar=gone.pdb --bonds 1.1"),
+            ("render a.xyz --bonds --legend -o b.png", "render a.xyz --bonds --legend -o b.png"),
+            ("render a.xyz --range 0 50 --frame -1", "render a.xyz --range=0,50 --frame=-1"),
+            ("render --range 2% 98% a.xyz --eye 0 -1 8", "render --range=2%,98% a.xyz --eye=0,-1,8"),
+            ("render --size 800 600 --view 30 20 7", "render --size=800,600 --view=30,20 7"),
+            ("render a.xyz --no-denoise --no-legend", "render a.xyz --denoise=false --no-legend"),
+            ("render a.xyz --cmap --log", "render a.xyz --cmap --log"),
+            ("render a.xyz -- --bonds 1", "render a.xyz -- --bonds 1"),
+            ("info Cargo.toml --bonds 1", "info Cargo.toml --bonds 1"),
+            ("job split a.xyz --bonds 1", "job split a.xyz --bonds=1"),
+        ] {
+            assert_eq!(plain(line).as_deref(), Ok(expected), "{line}");
+        }
+    }
+
+    #[test]
+    fn a_file_alone_is_rendered() {
+        for (line, expected) in [
+            ("Cargo.toml --style fast", "render Cargo.toml --style=fast"),
+            ("gone.pdb", "render gone.pdb"),
+            ("--ortho a.pdb", "render --camera=orthographic a.pdb"),
+            ("-o b.png a.pdb", "render -o b.png a.pdb"),
+            ("--help", "--help"),
+            ("-V", "-V"),
+            ("rendr", "rendr"),
+            ("job", "job"),
+            ("job a.pdb", "job a.pdb"),
+        ] {
+            assert_eq!(plain(line).as_deref(), Ok(expected), "{line}");
+        }
+    }
+
+    #[test]
+    fn other_names_have_the_meaning_of_flags() {
+        for (line, expected) in [
+            ("a.xyz --out b.png --bg black --colorbar top", "a.xyz --output=b.png --background=black --legend=top"),
+            ("a.xyz --colour red --title me@home", "a.xyz --color=red --label=me@home@top"),
+            ("a.xyz --color chain", "a.xyz --color-by=chain"),
+            ("a.xyz --color gren", "a.xyz --color=gren"),
+            ("a.xyz --only protein --exclude element_H", "a.xyz --select=(protein)_and_not_(element_H)"),
+            ("a.xyz --slice z=3:9 --slice x=:2", "a.xyz --select=3_<=_z_<=_9_and_x_<=_2"),
+            ("a.xyz --vmin 2", "a.xyz --range=2,"),
+            ("a.xyz --vmax 5 --vmin -1", "a.xyz --range=-1,5"),
+            ("a.xyz --every 5", "a.xyz --frames=::5"),
+            ("a.xyz --every 5 --frames 10:90", "a.xyz --frames=10:90:5"),
+            ("a.xyz --width 900", "a.xyz --size=900"),
+            ("a.xyz --height 600", "a.xyz --size=800x600"),
+            ("a.gro --zoom 2 a.xtc", "--topology=a.gro --zoom=2 a.xtc"),
+            ("a.dcd a.pdb", "a.dcd --topology=a.pdb"),
+            ("a.xyz --height 60 --width 50", "a.xyz --size=50x60"),
+        ] {
+            assert_eq!(plain(&format!("render {line}")), Ok(format!("render {expected}")), "{line}");
+        }
+        assert_eq!(plain("info a.xyz --width 9").as_deref(), Ok("info a.xyz --width 9"));
+    }
+
+    #[test]
+    fn words_without_a_meaning_are_refused() {
+        for (line, words) in [
+            ("--select resname HEM", "`HEM` is no file; quote it: --select 'resname HEM'"),
+            ("--show protein = trace", "`=` is no file; quote it: --show 'protein = trace'"),
+            ("--exclude name CA or water -o b.png", "`CA` is no file; quote it: --exclude 'name CA or water'"),
+            ("--clip x<5", "--clip: spheres are not cut; --select 'x < 5' keeps a part"),
+            ("--slice z", "--slice z: write AXIS=LOW:HIGH, such as z=3:9, which keeps whole spheres"),
+            ("--height x", "--height x: write a whole number"),
+            ("--every", "--every needs a value"),
+        ] {
+            assert_eq!(plain(&format!("render Cargo.toml {line}")), Err(words.to_owned()), "{line}");
+        }
+        let words = plain("render --only resname HEM Cargo.toml").unwrap_err();
+        assert!(words.starts_with("`HEM` is no file"), "{words}");
+        assert_eq!(plain("render --select protein gone.pdb").as_deref(), Ok("render --select=protein gone.pdb"));
+    }
+}
