@@ -29,7 +29,11 @@ fn files(format: &Format) -> Vec<(String, Vec<u8>)> {
     let mut names: Vec<String> = names.map(|name| name.into_string().unwrap()).collect();
     names.sort();
     names.retain(|name| {
-        let (_, extension) = name.trim_end_matches(".gz").rsplit_once('.').unwrap();
+        let (_, extension) = [".gz", ".xz", ".bz2", ".zst"]
+            .iter()
+            .fold(&**name, |name, end| name.trim_end_matches(end))
+            .rsplit_once('.')
+            .unwrap();
         extensions.contains(&extension)
     });
     let read = |name: String| (name.clone(), std::fs::read(folder.join(name)).unwrap());

@@ -100,7 +100,7 @@ fn of_data(path: &Path, format: &'static Format, options: &DataOptions) -> Resul
     let kind = Kind::Data(DataReport {
         format: format.name,
         about: format.about,
-        compressed: is_file.then(|| read_file::is_gzip(path)),
+        compressed: is_file.then(|| read_file::is_compressed(path)),
         frames,
         frame: has_frames.then(|| options.frame.unwrap_or_default()),
         problem,
@@ -216,7 +216,7 @@ pub(crate) struct DataReport {
     pub(crate) format: &'static str,
     #[serde(skip)]
     pub(crate) about: &'static str,
-    /// Whether the file is compressed with gzip; `None` on standard input.
+    /// Whether the file is compressed; `None` on standard input.
     pub(crate) compressed: Option<bool>,
     /// Number of frames; `None` if the format has no frames, or the number is not known.
     pub(crate) frames: Option<usize>,
@@ -288,7 +288,7 @@ pub(crate) fn readable(report: &Report) -> String {
     let mut line = |name: &str, value: String| text += &format!("  {name:<11}{value}\n");
     match &report.kind {
         Kind::Data(data) => {
-            let compressed = if data.compressed == Some(true) { ", compressed with gzip" } else { "" };
+            let compressed = if data.compressed == Some(true) { ", compressed" } else { "" };
             line("format", format!("{} ({}){compressed}", data.format, data.about));
         }
         Kind::Scene(_) => line("format", "scene file".to_owned()),

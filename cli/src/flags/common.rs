@@ -30,7 +30,7 @@ pub(crate) struct InputArgs {
 fn input_help() -> String {
     format!(
         "File to render: a scene file (.toml), or a data file ({}; .bin with --format), which the camera frames \
-         automatically and which may be compressed (.gz); `-` for standard input, with --format",
+         automatically and which may be compressed (.gz, .xz, .bz2, .zst); `-` for standard input, with --format",
         Format::extensions_of(|_| true)
     )
 }

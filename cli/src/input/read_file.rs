@@ -15,11 +15,11 @@ pub(crate) fn is_standard_input(path: &Path) -> bool {
     path == Path::new("-")
 }
 
-/// Whether a file starts as one that is compressed with gzip.
-pub(crate) fn is_gzip(path: &Path) -> bool {
-    let mut start = [0; 2];
-    let read = load::open_regular(path).and_then(|mut file| file.read_exact(&mut start));
-    read.is_ok() && start == [0x1f, 0x8b]
+/// Whether a file starts as one that is compressed.
+pub(crate) fn is_compressed(path: &Path) -> bool {
+    let mut start = Vec::new();
+    let read = load::open_regular(path).and_then(|file| file.take(16).read_to_end(&mut start));
+    read.is_ok() && load::is_compressed(&start)
 }
 
 /// Bytes that are read first from standard input, whose size is not known.

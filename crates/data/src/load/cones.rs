@@ -3,11 +3,12 @@
 
 use std::path::Path;
 
+use super::compressed::{Compression, decompressed};
 use super::cone_kind::ConeKind;
 use super::error::{LoadError, Place};
 use super::format::Format;
 use super::formats::CONE_FORMATS;
-use super::source::{decompressed, is_gzip, start_of};
+use super::source::start_of;
 use super::table::{Table, numbers_of};
 use pinhole::LinearRgb;
 use pinhole::scene::cone::Cone;
@@ -30,7 +31,7 @@ const END: &[[&str; 3]] = &[["end.x", "end.y", "end.z"]];
 const TWO_RADII: [[&str; 2]; 2] = [["radius.start", "radius.end"], ["radii.x", "radii.y"]];
 
 impl ConeSet {
-    /// Reads a file of cylinders or cones that is in memory, which may be compressed with gzip. `name` is the name of the
+    /// Reads a file of cylinders or cones that is in memory, which may be compressed. `name` is the name of the
     /// file, of which only the extension is used. `radii` are those of all shapes, for a file without radii.
     ///
     /// # Errors
@@ -42,7 +43,10 @@ impl ConeSet {
         kind: ConeKind,
         radii: Option<[f64; 2]>,
     ) -> Result<Self, LoadError> {
-        let plain = if is_gzip(bytes) { &decompressed(bytes)? } else { bytes };
+        let plain = match Compression::of(bytes) {
+            Some(compression) => &decompressed(bytes, compression)?,
+            None => bytes,
+        };
         let format = Format::of_file(name.as_ref(), &start_of(bytes)?).ok();
         let reads = |format: &Format| CONE_FORMATS.iter().find(|(name, _)| *name == format.name);
         let Some((_, read)) = format.and_then(reads) else {

@@ -3,10 +3,10 @@
 use std::fs::File;
 use std::io;
 
+use super::compressed::Compression;
 use super::dataset::Dataset;
 use super::error::LoadError;
 use super::format::{Format, Numbers, Options, Rows};
-use super::source::is_gzip;
 use super::table::Table;
 use pinhole::internals::parallel;
 use pinhole::scene::sphere_array::SphereArray;
@@ -35,7 +35,7 @@ impl<'a> FileRows<'a> {
         format.check(options)?;
         let size = file.metadata()?.len();
         let mut head = vec![0; size.min(HEAD) as usize];
-        if !read_at(file, &mut head, 0)? || is_gzip(&head) {
+        if !read_at(file, &mut head, 0)? || Compression::of(&head).is_some() {
             return Ok(None);
         }
         let rows = (format.rows)(&head, size, options);

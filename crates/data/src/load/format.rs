@@ -4,9 +4,10 @@ use std::ops::Range;
 use std::path::PathBuf;
 use std::{fmt, io};
 
+use super::compressed::{Compression, size_hint};
 use super::dataset::Dataset;
 use super::error::LoadError;
-use super::source::{Bytes, LineReader, bytes, gzip_size_hint, is_gzip};
+use super::source::{Bytes, LineReader, bytes};
 use super::topology::Topology;
 
 /// A file format for spheres.
@@ -166,8 +167,8 @@ impl Format {
     /// # Errors
     /// Returns an error if the file cannot be read.
     pub fn extra_bytes(&self, bytes: &[u8]) -> Result<u64, LoadError> {
-        if is_gzip(bytes) {
-            return Ok(gzip_size_hint(bytes));
+        if let Some(compression) = Compression::of(bytes) {
+            return Ok(size_hint(bytes, compression));
         }
         (self.extra_bytes)(bytes)
     }

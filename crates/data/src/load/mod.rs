@@ -15,6 +15,7 @@
 
 mod atoms;
 mod bonds;
+mod compressed;
 mod cone_kind;
 mod cones;
 mod dataset;
@@ -34,6 +35,7 @@ mod table;
 mod topology;
 
 pub(crate) use atoms::element::Residue;
+pub use compressed::is_compressed;
 pub use cone_kind::ConeKind;
 pub use cones::ConeSet;
 pub use dataset::{Column, ColumnValues, Dataset, Labels};

@@ -4,11 +4,12 @@
 use std::io::{self, Read as _};
 use std::path::{Path, PathBuf};
 
+use super::compressed::{Compression, decompressed};
 use super::dataset::Dataset;
 use super::error::{LoadError, LoadErrorKind, Place};
 use super::file_rows::FileRows;
 use super::format::{Format, FrameIndex, Frames, Options, ReadMethod, read_from_memory};
-use super::source::{Source, decompressed, is_gzip, start_of};
+use super::source::{Source, start_of};
 use super::topology::Topology;
 
 /// Reads a file of spheres. Its format is the one in the options, or else follows from the extension, or else from the
@@ -40,7 +41,7 @@ fn format_of(path: &Path, options: &Options, source: &mut Source) -> Result<&'st
     let first = source.start()?;
     let format = options.format.map_or_else(|| Format::of_file(path, &first), Ok)?;
     format.check(options)?;
-    if matches!(source, Source::Gzip(_)) {
+    if matches!(source, Source::Compressed(_)) {
         format.check_start(&first)?;
     }
     Ok(format)
@@ -60,15 +61,15 @@ pub fn from_bytes(bytes: &[u8], name: impl AsRef<Path>, options: &Options) -> Re
 }
 
 impl Format {
-    /// Reads a file of this format, which may be compressed with gzip.
+    /// Reads a file of this format, which may be compressed.
     ///
     /// # Errors
     /// Returns an error if the file cannot be read, or an option does not apply to this format.
     pub fn read(&self, bytes: &[u8], options: &Options) -> Result<Dataset, LoadError> {
         self.check(options)?;
-        if is_gzip(bytes) {
+        if let Some(compression) = Compression::of(bytes) {
             self.check_start(&start_of(bytes)?)?;
-            return self.read_plain(&decompressed(bytes)?, options);
+            return self.read_plain(&decompressed(bytes, compression)?, options);
         }
         self.read_plain(bytes, options)
     }

@@ -6,7 +6,7 @@ use crate::load::error::LoadError;
 use crate::load::format::Format;
 
 /// Extensions, and what to do with such a file. `FILE` stands for its name, and `STEM` for the name without extension.
-const REFUSED: [(&[&str], &str); 9] = [
+const REFUSED: [(&[&str], &str); 8] = [
     (&["traj", "xsf", "cube", "cfg", "res", "xsd"], "convert it: ase convert FILE STEM.extxyz"),
     (&["bcif", "mmtf"], "take the .cif.gz of the same entry"),
     (&["h5", "hdf5"], "save its positions in Python: np.savez(\"STEM.npz\", positions=f[\"...\"][:])"),
@@ -15,7 +15,6 @@ const REFUSED: [(&[&str], &str); 9] = [
     (&["psf", "prmtop", "top"], "give --topology a PDB or GRO file of the same atoms"),
     (&["mae", "maegz"], "convert it: obabel FILE -O STEM.mol2"),
     (&["pcd", "e57", "laz"], "save it as PLY"),
-    (&["xz", "bz2", "zst"], "decompress it; only .gz is read as it is"),
 ];
 
 impl Format {
@@ -42,7 +41,6 @@ mod tests {
             ("a/run 1.TRAJ", ".traj is not read; convert it: ase convert run 1.TRAJ run 1.extxyz"),
             ("a.h5", ".h5 is not read; save its positions in Python: np.savez(\"a.npz\", positions=f[\"...\"][:])"),
             ("STEM.tpr", ".tpr is not read; convert it: gmx editconf -f STEM.tpr -o STEM.gro"),
-            ("a.pdb.xz", ".xz is not read; decompress it; only .gz is read as it is"),
         ] {
             assert_eq!(Format::refused(Path::new(name)).unwrap().to_string(), words);
         }

@@ -1,13 +1,12 @@
-//! The bytes and the lines of a file, which may be compressed with gzip.
+//! The bytes and the lines of a file, which may be compressed.
 
-use std::ffi::OsStr;
 use std::fs::{File, Metadata};
 use std::io::{self, BufRead, BufReader, Cursor, Read, Seek, SeekFrom};
 use std::ops::Range;
-use std::path::{Path, PathBuf};
+use std::path::Path;
+use std::sync::Arc;
 
-use flate2::read::MultiGzDecoder;
-
+use super::compressed::{Compression, Decompressor};
 use super::error::LoadError;
 
 /// Number of bytes of a file that are read at a time.
@@ -19,11 +18,6 @@ const SMALL_PIECE: usize = 1 << 12;
 /// Number of first bytes that show the format of data.
 const START: u64 = 1 << 12;
 
-/// A compressed file expands to at most this many times its size, or to [`SMALL`] bytes if that is more. What expands
-/// further was made to fill the memory.
-const EXPANSION: u64 = 100;
-const SMALL: u64 = 1 << 28;
-
 pub(super) trait Bytes: BufRead + Seek {}
 
 impl<T: BufRead + Seek> Bytes for T {}
@@ -33,7 +27,7 @@ impl<T: BufRead + Seek> Bytes for T {}
 #[derive(Debug)]
 pub(super) enum Source {
     Plain(BufReader<File>),
-    Gzip(Box<BufReader<Gunzip<File>>>),
+    Compressed(Box<BufReader<Decompressor<Arc<File>>>>),
 }
 
 /// Opens a regular file. Others, such as pipes and devices, are refused, because reading them might never end.
@@ -54,9 +48,9 @@ impl Source {
     /// Opens a regular file. The first bytes show whether it is compressed.
     pub(super) fn open(path: &Path) -> io::Result<Self> {
         let mut plain = BufReader::with_capacity(PIECE, open_regular(path)?);
-        if is_gzip(plain.fill_buf()?) {
-            let gunzip = Gunzip::new(plain.into_inner())?;
-            return Ok(Self::Gzip(Box::new(BufReader::with_capacity(PIECE, gunzip))));
+        if let Some(compression) = Compression::of(plain.fill_buf()?) {
+            let decompressor = Decompressor::new(Arc::new(plain.into_inner()), compression)?;
+            return Ok(Self::Compressed(Box::new(BufReader::with_capacity(PIECE, decompressor))));
         }
         Ok(Self::Plain(plain))
     }
@@ -72,7 +66,7 @@ impl Source {
     pub(super) fn in_small_pieces(self) -> io::Result<Self> {
         let mut source = match self {
             Self::Plain(plain) => Self::Plain(BufReader::with_capacity(SMALL_PIECE, plain.into_inner())),
-            gzip => gzip,
+            compressed => compressed,
         };
         source.rewind()?;
         Ok(source)
@@ -81,7 +75,7 @@ impl Source {
     fn inner(&mut self) -> &mut dyn Bytes {
         match self {
             Self::Plain(plain) => plain,
-            Self::Gzip(gzip) => gzip.as_mut(),
+            Self::Compressed(compressed) => compressed.as_mut(),
         }
     }
 }
@@ -120,106 +114,18 @@ pub(super) fn bytes(source: &mut dyn Bytes, range: &Range<u64>) -> Result<Vec<u8
     Ok(bytes)
 }
 
-/// The path without the ending `.gz`, which says nothing about the compressed data.
-pub(super) fn without_gz(path: &Path) -> PathBuf {
-    let is_gz = path.extension().and_then(OsStr::to_str).is_some_and(|e| e.eq_ignore_ascii_case("gz"));
-    if is_gz { path.with_extension("") } else { path.to_path_buf() }
-}
-
-/// Whether the first bytes are those of a file that is compressed with gzip.
-pub(super) fn is_gzip(bytes: &[u8]) -> bool {
-    bytes.starts_with(&[0x1f, 0x8b])
-}
-
-pub(super) fn decompressed(bytes: &[u8]) -> io::Result<Vec<u8>> {
-    let mut all = Vec::new();
-    Gunzip::new(Cursor::new(bytes))?.read_to_end(&mut all)?;
-    Ok(all)
-}
-
 /// The first bytes of data that may be compressed.
 pub(super) fn start_of(bytes: &[u8]) -> io::Result<Vec<u8>> {
-    if is_gzip(bytes) { start_of_plain(MultiGzDecoder::new(bytes)) } else { start_of_plain(bytes) }
+    match Compression::of(bytes) {
+        Some(compression) => start_of_plain(Decompressor::new(Cursor::new(bytes), compression)?),
+        None => start_of_plain(bytes),
+    }
 }
 
 fn start_of_plain(data: impl Read) -> io::Result<Vec<u8>> {
     let mut first = Vec::new();
     data.take(START).read_to_end(&mut first)?;
     Ok(first)
-}
-
-/// The decompressed size of a file, from its last four bytes. It is right for a file of one member and less than 4
-/// GiB. Only the check for enough memory depends on it.
-pub(super) fn gzip_size_hint(bytes: &[u8]) -> u64 {
-    bytes.last_chunk().map_or(0, |last| u32::from_le_bytes(*last).into())
-}
-
-/// Decompresses a file as it is read. Seeking forward decompresses the bytes between, and seeking back starts again.
-#[derive(Debug)]
-pub(super) struct Gunzip<R> {
-    /// `None` only while the decoder is being replaced.
-    decoder: Option<MultiGzDecoder<R>>,
-    /// Number of decompressed bytes that were read.
-    position: u64,
-    /// Number of decompressed bytes after which the file is refused.
-    most: u64,
-}
-
-impl<R: Read + Seek> Gunzip<R> {
-    /// Decompresses `compressed` from its start.
-    pub(super) fn new(mut compressed: R) -> io::Result<Self> {
-        let most = compressed.seek(SeekFrom::End(0))?.saturating_mul(EXPANSION).max(SMALL);
-        compressed.rewind()?;
-        Ok(Self { decoder: Some(MultiGzDecoder::new(compressed)), position: 0, most })
-    }
-
-    fn restart(&mut self) -> io::Result<()> {
-        if let Some(decoder) = self.decoder.take() {
-            *self = Self::new(decoder.into_inner())?;
-        }
-        Ok(())
-    }
-
-    /// Reads on until `position`, or until the end, whichever comes first.
-    fn read_up_to(&mut self, position: u64) -> io::Result<()> {
-        let between = position.saturating_sub(self.position);
-        io::copy(&mut self.by_ref().take(between), &mut io::sink())?;
-        Ok(())
-    }
-}
-
-impl<R: Read> Read for Gunzip<R> {
-    fn read(&mut self, buffer: &mut [u8]) -> io::Result<usize> {
-        let read = self.decoder.as_mut().map_or(Ok(0), |decoder| decoder.read(buffer))?;
-        self.position += read as u64;
-        if self.position > self.most {
-            let message = format!(
-                "it expands to more than {EXPANSION} times its size; decompress it with gunzip first, if you trust it"
-            );
-            return Err(io::Error::new(io::ErrorKind::InvalidData, message));
-        }
-        Ok(read)
-    }
-}
-
-impl<R: Read + Seek> Seek for Gunzip<R> {
-    fn seek(&mut self, to: SeekFrom) -> io::Result<u64> {
-        let outside = || io::Error::new(io::ErrorKind::InvalidInput, "a place before the start");
-        let wanted = match to {
-            SeekFrom::Start(position) => position,
-            SeekFrom::Current(by) => self.position.checked_add_signed(by).ok_or_else(outside)?,
-            SeekFrom::End(by) => {
-                self.read_up_to(u64::MAX)?;
-                self.position.checked_add_signed(by).ok_or_else(outside)?
-            }
-        };
-        if wanted < self.position {
-            self.restart()?;
-        }
-        self.read_up_to(wanted)?;
-        // Nothing can be read at a place after the end, as in a plain file.
-        Ok(wanted)
-    }
 }
 
 /// Reads lines one by one, and counts them and their bytes.
@@ -287,66 +193,5 @@ impl<'a> LineReader<'a> {
         }
         self.line += found;
         Ok(found)
-    }
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-    use std::io::Write as _;
-
-    use flate2::Compression;
-    use flate2::write::GzEncoder;
-
-    #[test]
-    fn names_of_compressed_files() {
-        for (name, inner) in [("a.xyz.gz", "a.xyz"), ("a.xyz", "a.xyz"), ("b/a.GZ", "b/a"), ("gz", "gz")] {
-            assert_eq!(without_gz(Path::new(name)), Path::new(inner), "{name}");
-        }
-    }
-
-    fn compressed(bytes: &[u8]) -> Vec<u8> {
-        let mut encoder = GzEncoder::new(Vec::new(), Compression::fast());
-        encoder.write_all(bytes).unwrap();
-        encoder.finish().unwrap()
-    }
-
-    #[test]
-    fn seeks_forward_and_back() {
-        let bytes: Vec<u8> = (0..100_000_u32).flat_map(u32::to_le_bytes).collect();
-        // Two members, as `cat a.gz b.gz` makes them.
-        let (first, second) = bytes.split_at(123_456);
-        let file = [compressed(first), compressed(second)].concat();
-        assert!(is_gzip(&file));
-        assert_eq!(decompressed(&file).unwrap(), bytes);
-        assert_eq!(gzip_size_hint(&compressed(&bytes)), 400_000);
-        let mut gunzip = BufReader::new(Gunzip::new(Cursor::new(file)).unwrap());
-        for at in [300_000_u64, 17, 399_996, 0, 123_456] {
-            gunzip.seek(SeekFrom::Start(at)).unwrap();
-            assert_eq!(gunzip.stream_position().unwrap(), at);
-            let mut four = [0; 4];
-            gunzip.read_exact(&mut four).unwrap();
-            assert_eq!(four, bytes[at as usize..][..4]);
-        }
-        assert_eq!(gunzip.seek(SeekFrom::End(-4)).unwrap(), 399_996);
-        assert_eq!(gunzip.fill_buf().unwrap(), &bytes[399_996..]);
-    }
-
-    #[test]
-    fn what_expands_too_far_is_refused() {
-        let mut gunzip = Gunzip::new(Cursor::new(compressed(&[b'\n'; 100_000]))).unwrap();
-        assert_eq!(gunzip.most, SMALL);
-        gunzip.most = 10_000;
-        let error = gunzip.read_to_end(&mut Vec::new()).unwrap_err().to_string();
-        assert!(error.starts_with("it expands to more than 100 times its size; "), "{error}");
-    }
-
-    #[test]
-    fn a_damaged_file_is_an_error() {
-        let mut file = compressed(&[7; 1000]);
-        file.truncate(file.len() - 6);
-        let mut all = Vec::new();
-        assert!(decompressed(&file).is_err());
-        assert!(Gunzip::new(Cursor::new(file)).unwrap().read_to_end(&mut all).is_err());
     }
 }

@@ -5,11 +5,12 @@ use std::ffi::OsStr;
 use std::io;
 use std::path::Path;
 
+use crate::load::compressed::without_ending;
 use crate::load::cone_kind::ConeKind;
 use crate::load::dataset::Dataset;
 use crate::load::error::LoadError;
 use crate::load::format::{Format, Options, ReadMethod};
-use crate::load::source::{Source, without_gz};
+use crate::load::source::Source;
 use crate::load::table::Columns;
 
 pub mod csv;
@@ -286,7 +287,7 @@ impl Format {
     }
 
     /// Returns the format of a file by its extension, or else by the first bytes of a regular file, which may be
-    /// compressed with gzip. Other files are not opened, because a pipe can be read only once.
+    /// compressed. Other files are not opened, because a pipe can be read only once.
     ///
     /// # Errors
     /// Returns an error if the first bytes are needed and cannot be read.
@@ -298,9 +299,9 @@ impl Format {
         Ok(Self::of_content(&Source::open(path)?.start()?))
     }
 
-    /// Returns the format with the extension of a file's name, without `.gz`, or else with the start of the name.
+    /// Returns the format with the extension of a file's name, without `.gz` and the like, or else with the start of the name.
     fn of_file_name(path: &Path) -> Option<&'static Self> {
-        let path = without_gz(path);
+        let path = without_ending(path);
         let by_extension = path.extension().and_then(OsStr::to_str).and_then(Self::of_extension);
         by_extension.or_else(|| {
             let name = path.file_name()?.to_str()?;
@@ -384,7 +385,7 @@ mod tests {
     fn names_of_files_show_the_format() {
         for (name, format) in [
             ("POSCAR", Some("poscar")),
-            ("a/XDATCAR_300K.gz", Some("poscar")),
+            ("a/XDATCAR_300K.xz", Some("poscar")),
             ("CONTCAR.2", Some("poscar")),
             ("POSCAR.xyz", Some("xyz")),
             ("a.VASP", Some("poscar")),
