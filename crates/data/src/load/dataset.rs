@@ -102,6 +102,11 @@ pub(super) fn retain<T>(values: &mut Vec<T>, is_kept: &[bool]) {
     values.retain(|_| is_kept.next().copied().unwrap_or(true));
 }
 
+/// The values with some indices.
+fn taken<T: Copy>(values: &[T], indices: &[u32]) -> Vec<T> {
+    indices.iter().filter_map(|index| values.get(*index as usize).copied()).collect()
+}
+
 /// The centre of a sphere.
 pub(super) fn center(spheres: &SphereArray, index: usize) -> DVec3 {
     let [x, y, z, _] = spheres.at(index);
@@ -205,6 +210,24 @@ impl Dataset {
         if let Some(left) = left {
             self.correct_notes(false, false, |name| left.iter().all(|other| other != name));
         }
+    }
+
+    /// Replaces the spheres by those with these indices, which may occur several times, with all their values. Bonds are
+    /// lost, as nothing says which of equal ends they join. Indices that no sphere has are left out.
+    pub(super) fn repeat(&mut self, indices: &[u32]) {
+        match &mut self.spheres {
+            SphereArray::F32(spheres) => *spheres = taken(spheres, indices),
+            SphereArray::F64(spheres) => *spheres = taken(spheres, indices),
+        }
+        self.colors.iter_mut().for_each(|colors| *colors = taken(colors, indices));
+        self.opacities.iter_mut().for_each(|opacities| *opacities = taken(opacities, indices));
+        for column in &mut self.columns {
+            match &mut column.values {
+                ColumnValues::Labels(labels) => labels.indices = taken(&labels.indices, indices),
+                ColumnValues::Numbers(numbers) => *numbers = taken(numbers, indices),
+            }
+        }
+        self.bonds.clear();
     }
 
     /// Iterates over the spheres. If the file gives no colours, every sphere gets `color`.

@@ -7,9 +7,11 @@
 //!
 //! Bonds are the connections of `_struct_conn` that are covalent or those of metals, in the block of the atoms.
 //!
-//! Positions that are fractions of the cell are those of the atoms that the file lists. Symmetry is not applied.
+//! Positions that are fractions of the cell are repeated by the operators of symmetry that the block lists, so that the
+//! cell is full.
 
 mod links;
+mod symmetry;
 mod tokens;
 
 use std::collections::HashSet;
@@ -23,6 +25,7 @@ use crate::load::error::LoadError;
 use crate::load::format::{FrameIndex, FrameReader, FrameSpan, Frames, Options};
 use crate::load::source::{Bytes, bytes};
 use pinhole::internals::text::{shortened, without_byte_order_mark};
+use symmetry::Symmetry;
 use tokens::{Columns, Header, Place, SLOTS, Token, Tokens, cut_row, decimal, is_unknown, not_a_number};
 
 pub(super) const FRAMES: Frames = Frames::Bytes { find };
@@ -77,11 +80,11 @@ impl FrameReader for MmCif {
         let end = frames.get(last + 1).map_or(self.end, |next| next.bytes.start);
         let after = bytes(source, &(frames[last].bytes.end..end))?;
         let mut links = links::links(links::last_block(&before), lines_of_rows)?;
+        let lines_after = frames[last].lines_before + count_lines(&bytes(source, &frames[last].bytes)?);
         if self.is_whole && (header.cell()?.is_none() || links::are_in(&after)) {
-            let lines = frames[last].lines_before + count_lines(&bytes(source, &frames[last].bytes)?);
-            header.add_after(&after, lines)?;
+            header.add_after(&after, lines_after)?;
             let block = links::first_block(&after);
-            links.extend(links::links(block, lines + count_lines(block))?);
+            links.extend(links::links(block, lines_after + count_lines(block))?);
         }
         let cell = header.cell()?;
         let columns = header.columns.ok_or_else(no_atoms)?;
@@ -97,10 +100,13 @@ impl FrameReader for MmCif {
         loaded.cell = cell;
         loaded.is_part_of_crystal = !columns.is_fractional;
         if columns.is_fractional {
-            loaded.notes.push(
-                "only the atoms that the file lists are there; the symmetry of the crystal is not applied to them"
-                    .to_owned(),
-            );
+            let mut symmetry = Symmetry::default();
+            let block = links::last_block(&before);
+            symmetry.add(block, lines_of_rows.saturating_sub(count_lines(block)))?;
+            if self.is_whole {
+                symmetry.add(links::first_block(&after), lines_after)?;
+            }
+            symmetry.fill(&mut loaded)?;
         }
         Ok(loaded)
     }
