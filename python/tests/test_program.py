@@ -72,7 +72,7 @@ def test_movies_and_turntables(program, tmp_path):
     for style in ("fast", "default"):
         flags = ["--size", "96x72", "--style", style, "--backend", "cpu"]
         settings = {"size": (96, 72), "style": style, "backend": "cpu"}
-        program("t.xyz", *flags, "--frames", ":", output=f"{style}-p%d.png")
+        program("t.xyz", *flags, "--kind", "plain", "--frames", ":", output=f"{style}-p%d.png")
         ph.read(tmp_path / "t.xyz").movie(tmp_path / f"{style}-m%d.png", **settings)
         program("rod.npy", *flags, "--radius", "0.3", "--turntable", "3", output=f"{style}-q%d.png")
         ph.Spheres(rod, 0.3).turntable(tmp_path / f"{style}-t%d.png", frames=3, **settings)

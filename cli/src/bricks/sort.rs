@@ -145,7 +145,7 @@ fn input(args: &SortArgs) -> Result<Input, Failure> {
         topology: args.topology.clone(),
         columns: args.columns.clone(),
     };
-    let source = Source::new(&args.path, &options.given(args.format))?;
+    let source = Source::new(&args.path, &options.given(args.format).plain())?;
     let Some(format) = source.data_format() else {
         return Err(Failure::usage(format!(
             "{}: name a data file; scenes are sorted by the data that they name",

@@ -35,6 +35,11 @@ impl Given {
         self
     }
 
+    /// The flags, for work on the spheres as they are, whatever kind of data they are.
+    pub(crate) fn plain(self) -> Self {
+        self.with("kind", Some("plain".to_owned()))
+    }
+
     /// The flags without one of them.
     pub(crate) fn without(&self, name: &str) -> Self {
         Self(self.0.iter().filter(|(flag, _)| flag.name() != name).cloned().collect())
@@ -67,6 +72,15 @@ impl Given {
     pub(crate) fn first_in(&self, groups: u32) -> Option<&'static str> {
         let mut given = self.0.iter().map(|(flag, _)| *flag);
         given.find(|flag| flag.group as u32 & groups != 0).map(|flag| flag.flag)
+    }
+
+    /// Whether a flag gives a key, a key within its table, or a key of a camera with this name.
+    pub(crate) fn has_key(&self, key: &str) -> bool {
+        let is = |flag: &Flag| {
+            let (first, last) = (flag.key.split('.').next(), flag.key.strip_prefix("camera.*."));
+            first == Some(key) || last == Some(key)
+        };
+        self.0.iter().any(|(flag, _)| is(flag))
     }
 
     /// The settings that the flags give.

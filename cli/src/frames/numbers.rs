@@ -7,11 +7,12 @@ use crate::frames::moving::{PathRequest, in_frame};
 use crate::frames::target::Target;
 use crate::frames::{Pictures, SeriesRequest};
 use crate::input::contents::Contents;
+use crate::input::kinds::Chosen;
 use crate::input::{FoundFrames, Source};
 use crate::terminal::failure::Failure;
 use crate::terminal::progress::{self, tell};
 use pinhole::scene::{Scene, SceneError};
-use pinhole_figure::color_by::{ColorBy, JoinedKeys};
+use pinhole_figure::color_by::JoinedKeys;
 use pinhole_figure::framing::{Union, scene_of};
 
 #[derive(Default)]
@@ -130,16 +131,16 @@ pub(crate) struct Overview {
     /// The number of these spheres, at the end, that were added to the data.
     pub(crate) added: usize,
     pub(crate) colors: JoinedKeys,
-    /// The frame with kinds of spheres by which it is coloured without a flag.
+    /// The frame from which comes what is chosen for its kind.
     pub(crate) kinds_from: Option<usize>,
-    /// The choice of these colours, if it is known.
-    kinds: Option<ColorBy>,
+    /// This choice, if it is known.
+    chosen: Option<Chosen>,
 }
 
 impl Overview {
-    /// Restores facts that were stored. The colours by kind are read again from their frame.
+    /// Restores facts that were stored. What was chosen is read again from its frame.
     pub(crate) fn stored(spheres: Vec<[f64; 4]>, added: usize, colors: JoinedKeys, kinds_from: Option<usize>) -> Self {
-        Self { spheres, added, colors, kinds_from, kinds: None }
+        Self { spheres, added, colors, kinds_from, chosen: None }
     }
 
     /// Reads all frames that the camera frames, and gathers the facts.
@@ -151,8 +152,13 @@ impl Overview {
             let contents = frame(source, number)?;
             contents.color_key().into_iter().for_each(|key| overview.colors.add(key));
             contents.details.arrow_key.iter().for_each(|key| overview.colors.add_arrows(key));
-            if let (None, Some(kinds)) = (&overview.kinds, &contents.details.kinds) {
-                (overview.kinds, overview.kinds_from) = (Some(kinds.clone()), Some(number));
+            // Colours by kinds of spheres may begin in a later frame.
+            if let Some(chosen) = &contents.details.chosen
+                && (overview.chosen.is_none() || chosen.colors.is_some())
+                && overview.chosen.as_ref().is_none_or(|first| first.colors.is_none())
+            {
+                (overview.chosen, overview.kinds_from) = (Some(chosen.clone()), Some(number));
+                source.chosen = overview.chosen.clone();
             }
             union.add(&contents.scene);
         }
@@ -160,11 +166,11 @@ impl Overview {
         Ok(overview)
     }
 
-    /// Returns the colours by kind that no flag asked for.
-    pub(crate) fn kinds(&self, source: &mut Source) -> Result<Option<ColorBy>, Failure> {
-        match (&self.kinds, self.kinds_from) {
-            (None, Some(number)) => Ok(frame(source, number)?.details.kinds),
-            (kinds, _) => Ok(kinds.clone()),
+    /// Returns what was chosen because no flag said it.
+    pub(crate) fn chosen(&self, source: &mut Source) -> Result<Option<Chosen>, Failure> {
+        match (&self.chosen, self.kinds_from) {
+            (None, Some(number)) => Ok(frame(source, number)?.details.chosen),
+            (chosen, _) => Ok(chosen.clone()),
         }
     }
 

@@ -70,9 +70,9 @@ pub(super) fn frames(
     path: Option<(&PathRequest, u32)>,
 ) -> Result<Start, Failure> {
     let missing = overview.colors.missing();
-    let kinds = overview.kinds(source)?;
+    let chosen = overview.chosen(source)?;
     source.joined = overview.colors.clone();
-    source.kinds = kinds;
+    source.chosen = chosen;
     let framed = overview.scene().with_context(|| source.name())?;
     let mut contents = frame(source, first)?;
     // The legend describes all frames.

@@ -7,6 +7,7 @@ use anyhow::{Context, Error, Result, anyhow};
 
 use crate::bricks::BrickFile;
 use crate::input::data::{self, DataOptions, as_usage};
+use crate::input::kinds::Chosen;
 use crate::input::read_file::{Format, data_format};
 use crate::input::source::{Source, default_color};
 use crate::input::{extension, read};
@@ -17,7 +18,7 @@ use pinhole::scene::Scene;
 use pinhole_data::added::ArrowKey;
 use pinhole_data::load::{self, Column, ConeSet, Dataset};
 use pinhole_data::select::KeptSpheres;
-use pinhole_figure::color_by::{ColorBy, ColorKey};
+use pinhole_figure::color_by::ColorKey;
 use pinhole_figure::scene_file::{ConeFile, Data, DataError, DataScene, IntegratorKind, SceneFile};
 use pinhole_figure::settings::flags::Group;
 
@@ -39,8 +40,8 @@ pub(crate) struct Details {
     pub(crate) color_key: Option<ColorKey>,
     /// The meaning of arrows, if there are any.
     pub(crate) arrow_key: Option<ArrowKey>,
-    /// The colors by kind that no flag asked for.
-    pub(crate) kinds: Option<ColorBy>,
+    /// What was chosen for the data, because no flag said it.
+    pub(crate) chosen: Option<Chosen>,
     /// The color of spheres without one, if a key or a flag gives it.
     pub(crate) color: Option<LinearRgb>,
     /// Where the size of the picture comes from.
@@ -118,7 +119,8 @@ impl Source {
 
     fn contents_of(&self, mut file: SceneFile) -> Result<Contents, Failure> {
         let of_cones = file.read_cones(|of| self.read_cones(of)).map_err(|error| self.failure(error))?;
-        let (scene, mut details) = self.scene_of(&file)?;
+        let (of_kind, scene, mut details) = self.scene_of(&file)?;
+        file = of_kind.unwrap_or(file);
         details.notes.extend(of_cones);
         if scene.is_empty() && matches!(self.format, Format::Data(_)) {
             details.notes.push(format!(
@@ -176,11 +178,12 @@ impl Source {
         Ok(set)
     }
 
-    /// Makes the scene of a scene file, and of its data if it has any.
-    fn scene_of(&self, file: &SceneFile) -> Result<(Scene, Details), Failure> {
+    /// Makes the scene of a scene file, and of its data if it has any. For a data file, the file with what was chosen for
+    /// its kind comes out as well.
+    fn scene_of(&self, file: &SceneFile) -> Result<(Option<SceneFile>, Scene, Details), Failure> {
         let file_name = || self.path.display().to_string();
         let Some(place) = self.data_place(file)? else {
-            return Ok((file.scene().with_context(file_name)?, Details::default()));
+            return Ok((None, file.scene().with_context(file_name)?, Details::default()));
         };
         let in_scene = || self.in_scene();
         let read = self.read_data(&place);
@@ -188,13 +191,26 @@ impl Source {
         let mut loaded = if is_data { read } else { read.with_context(in_scene) }.map_err(as_usage)?;
         let mut data = place.data;
         let has_atoms = loaded.labels("species").is_some();
-        let mut kinds = None;
+        let (mut of_kind, mut chosen) = (None, None);
         if is_data {
-            kinds = data.color_by_kinds(&loaded, self.kinds.clone());
+            let mut choice = self
+                .chosen
+                .clone()
+                .unwrap_or_else(|| Chosen::of(&loaded, data.select.as_ref(), &self.given, self.frames.is_some()));
+            let with_kind = self.scene_of_kind(&choice)?;
+            data = self.keys_of_data(&with_kind).unwrap_or(data);
+            if place.options.radius.is_none() {
+                data::give_radius(&mut loaded, data.radius);
+            }
+            let colors = data.color_by_kinds(&loaded, choice.colors.take());
             data.mapping.color.iter_mut().for_each(|by| self.joined.apply_to(by));
-            let note = kinds.as_ref().map(|by| by.note_of_kinds("--color CSS"));
-            loaded.notes.extend(note.map(|note| format!("{}: {note}", self.path.display())));
+            let of_colors = colors.as_ref().map(|by| by.note_of_kinds("--color CSS"));
+            let notes = choice.notes.iter().copied().map(str::to_owned).chain(of_colors);
+            loaded.notes.extend(notes.map(|note| format!("{}: {note}", self.path.display())));
+            choice.colors = colors;
+            (of_kind, chosen) = (Some(with_kind), Some(choice));
         }
+        let file = of_kind.as_ref().unwrap_or(file);
         let made = data.scene(loaded, file.shapes()).map_err(|error| match error {
             DataError::Scene(error) if !is_data => Error::new(file.at_shape(&error)).context(file_name()),
             DataError::Select(error) if is_data => Error::new(error).context("--select").context(file_name()),
@@ -203,8 +219,8 @@ impl Source {
         let DataScene { scene, color_key, arrow_key, columns, notes, kept, bonds, .. } = made?;
         let columns = if self.keeps_columns { columns } else { Vec::new() };
         let color = data.color;
-        let details = Details { has_atoms, columns, kinds, color, notes, ..Details::default() };
-        Ok((scene, Details { color_key, arrow_key, kept, bonds, ..details }))
+        let details = Details { has_atoms, columns, chosen, color, notes, ..Details::default() };
+        Ok((of_kind, scene, Details { color_key, arrow_key, kept, bonds, ..details }))
     }
 
     /// Finds the data of a scene file; `None` if it has none.

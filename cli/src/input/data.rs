@@ -80,8 +80,8 @@ pub(crate) fn read(path: &Path, format: &'static Format, options: &DataOptions) 
 }
 
 /// Gives all spheres the radius that is asked for.
-pub(crate) fn give_radius(loaded: &mut Dataset, options: &DataOptions) {
-    if let Some(radius) = options.radius {
+pub(crate) fn give_radius(loaded: &mut Dataset, radius: Option<f64>) {
+    if let Some(radius) = radius {
         loaded.spheres.map_radii(|_, _| radius);
         loaded.correct_notes(false, true, |_| false);
     }
@@ -89,7 +89,7 @@ pub(crate) fn give_radius(loaded: &mut Dataset, options: &DataOptions) {
 
 /// Gives all spheres the radius that is asked for, and puts the path before notes.
 fn complete(loaded: &mut Dataset, path: &Path, options: &DataOptions) {
-    give_radius(loaded, options);
+    give_radius(loaded, options.radius);
     for note in &mut loaded.notes {
         *note = format!("{}: {note}", path.display());
     }

@@ -9,6 +9,7 @@ use super::Input;
 use super::read;
 use crate::flags::camera::CameraTable;
 use crate::input::contents::{Contents, Details};
+use crate::input::kinds::KIND;
 use crate::input::read_file::Format;
 use crate::input::source::{Source, default_color};
 use crate::output::picture::PictureFormat;
@@ -116,7 +117,9 @@ impl Source {
         })?;
         let settings = file.settings(file.kind(), scene, camera.as_ref(), sky);
         let settings = settings.map_err(|error| self.failure(error))?;
-        let has_view = self.has_camera_of_flags(file);
+        // A view that follows from the kind of the data need not be said.
+        let of_kind = CameraTable::new(&asked).and_then(|table| file.flag_of(&format!("camera.{}.view", table.kind)));
+        let has_view = self.has_camera_of_flags(file) && of_kind != Some(KIND);
         let view = if has_view { view_in_flags(&asked, facing) } else { None };
         Ok(Look { camera, eyes, settings, parameters, view })
     }
@@ -170,7 +173,7 @@ impl Source {
             sky_image,
             color_key,
             arrow_key,
-            kinds,
+            chosen,
             has_atoms,
             size_from,
             kept,
@@ -178,6 +181,8 @@ impl Source {
             color,
             ..
         } = details;
+        let kind = chosen.as_ref().and_then(|chosen| chosen.name);
+        let kinds = chosen.and_then(|chosen| chosen.colors);
         let spheres = match (&self.bricks, &kept) {
             (Some(bricks), _) => bricks.whole().count as usize,
             (None, Some(kept)) => kept.kept,
@@ -191,6 +196,7 @@ impl Source {
             bonds,
             has_atoms,
             style: file.style(),
+            kind,
             view: look.view,
             color_by: kinds.as_ref().map(|by| by.column.clone()),
         };

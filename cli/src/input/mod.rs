@@ -23,6 +23,7 @@ use pinhole_figure::scene_file::{Data, SceneFile};
 
 pub(crate) mod contents;
 pub(crate) mod data;
+pub(crate) mod kinds;
 mod load;
 mod look;
 pub(crate) mod read_file;

@@ -11,6 +11,7 @@ use crate::bricks::BrickFile;
 use crate::flags::settings::Given;
 use crate::frames::args::FrameRange;
 use crate::input::data::{self, DataOptions};
+use crate::input::kinds::Chosen;
 use crate::input::read_file::{Format, check_regular, data_format};
 use crate::output::picture::PictureFormat;
 use crate::terminal::failure::Failure;
@@ -37,8 +38,8 @@ pub(crate) struct Source {
     pub(crate) frame: Option<usize>,
     /// The colour keys shared by all frames of a movie.
     pub(crate) joined: JoinedKeys,
-    /// The colours by kind that all frames of a movie have, although no flag asks for them.
-    pub(crate) kinds: Option<ColorBy>,
+    /// What was chosen for all frames of a movie.
+    pub(crate) chosen: Option<Chosen>,
     /// The open file, if several of its frames are read.
     pub(crate) frames: Option<Arc<OpenFrames>>,
     /// Whether the columns of the data are kept, for the viewer.
@@ -101,7 +102,7 @@ impl Source {
             output: PictureFormat::Png,
             frame: None,
             joined: JoinedKeys::default(),
-            kinds: None,
+            chosen: None,
             frames: None,
             keeps_columns: false,
             bricks: None,
@@ -128,12 +129,15 @@ impl Source {
         let is_data = Format::of(path).ok() != Some(Format::Scene);
         let format = args.format.filter(|_| is_data);
         let options = DataOptions { radius: args.radius, ..DataOptions::default() };
-        let given = options.given(format).with("size", args.size.clone());
+        let given = options.given(format).with("size", args.size.clone()).plain();
         Self::new(path, &given)?.without_bricks("`bench`")
     }
 
     /// Checks the flags for a file that is not a scene file.
     fn check(&self) -> Result<(), Failure> {
+        if !matches!(self.format, Format::Data(_)) && self.given.get("kind").is_some_and(|kind| kind != "plain") {
+            return Err(Failure::usage(format!("--kind applies to data files, and {} is none", self.path.display())));
+        }
         if self.format == Format::Scene {
             return Ok(());
         }
@@ -156,6 +160,14 @@ impl Source {
         let text = format!("data = {}", quoted(&self.path.to_string_lossy()));
         let sources = Sources { file: &text, flags: &self.layers, style: Some(self.style) };
         SceneFile::read(&sources).map_err(|error| self.failure(error))
+    }
+
+    /// The scene that stands for a data file, with what was chosen for it.
+    pub(super) fn scene_of_kind(&self, chosen: &Chosen) -> Result<SceneFile, Failure> {
+        // The settings of the kind come first, so that those of flags take their place.
+        let mut layers = self.layers.clone();
+        layers.insert(0, chosen.layer.clone());
+        Self { layers, ..self.clone() }.scene_of_data()
     }
 
     /// Reads the text of a scene file, with the flags.

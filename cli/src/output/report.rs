@@ -35,6 +35,8 @@ pub(crate) struct Report {
     pub(crate) bonds: Option<usize>,
     pub(crate) has_atoms: bool,
     pub(crate) style: Option<Style>,
+    /// The kind of the data, if it decides anything.
+    pub(crate) kind: Option<&'static str>,
     /// The flags for the view, if any.
     pub(crate) view: Option<String>,
     /// The column that colours the spheres without a flag.
@@ -57,8 +59,10 @@ impl Report {
         let noun = if self.has_atoms { "atom" } else { "sphere" };
         let plural = if self.selected_from.unwrap_or(self.spheres) == 1 { "" } else { "s" };
         let style = self.style.map(|style| format!("--style {}", style.name()));
-        let flags: Vec<String> = style
+        let kind = self.kind.map(|kind| format!("--kind {kind}"));
+        let flags: Vec<String> = kind
             .into_iter()
+            .chain(style)
             .chain(self.view.clone())
             .chain(self.color_by.as_ref().map(|column| format!("--color-by {column}")))
             .collect();

@@ -414,7 +414,7 @@ fn colors_by_kind_are_those_of_all_frames() {
         )
     };
     let folder = Folder::with(&[("a.lammpstrj", &(frame(&[2, 2]) + &frame(&[1, 2])))]);
-    let flags = "--backend cpu --size 80x40 --style fast --view z --radius 1 -q";
+    let flags = "--backend cpu --size 80x40 --style fast --view z --radius 1 --kind plain -q";
     folder.run(&format!("render a.lammpstrj -o f%d.png --frames : {flags}")).succeeded();
     let right = ["f0.png", "f1.png"].map(|name| {
         let (_, _, rgb) = decode(&folder.read(name));

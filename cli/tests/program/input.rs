@@ -184,8 +184,8 @@ fn frames_of_a_trajectory() {
     let render = |arguments: &str| {
         folder.run(&format!("render {arguments} --size 32x32 --backend cpu --view iso")).succeeded();
     };
-    render("two.xyz -o first.png");
-    render("two.xyz -o second.png --frame 1");
+    render("two.xyz -o first.png --kind plain");
+    render("two.xyz -o second.png --frame 1 --kind plain");
     assert_ne!(folder.read("first.png"), folder.read("second.png"));
     render("scene.toml -o of-scene.png");
     assert_eq!(folder.read("of-scene.png"), folder.read("second.png"));
@@ -273,9 +273,9 @@ fn the_content_shows_the_format_where_the_name_does_not() {
         ("water", WATER),
         ("scene.toml", "style = \"default\"\ndata = \"water.dat\"\n[camera.pinhole]\ndirection = [0, -1, 0]\n"),
     ]);
-    folder.run("render water.xyz -o wanted.png --backend cpu --size 20x16").succeeded();
-    for file in ["water.dat", "water", "scene.toml"] {
-        folder.run(&format!("render {file} -o a.png --backend cpu --size 20x16")).succeeded();
+    folder.run("render water.xyz -o wanted.png --kind plain --backend cpu --size 20x16").succeeded();
+    for (file, plain) in [("water.dat", "--kind plain"), ("water", "--kind plain"), ("scene.toml", "")] {
+        folder.run(&format!("render {file} {plain} -o a.png --backend cpu --size 20x16")).succeeded();
         assert_eq!(folder.read("a.png"), folder.read("wanted.png"), "{file}");
     }
 }

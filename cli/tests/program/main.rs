@@ -20,6 +20,7 @@ mod interrupt;
 #[cfg(unix)]
 mod job_faults;
 mod jobs;
+mod kinds;
 mod pictures;
 mod snapshots;
 mod support;

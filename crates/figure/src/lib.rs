@@ -14,6 +14,7 @@
 pub mod annotate;
 pub mod color_by;
 pub mod framing;
+pub mod kind;
 pub mod read;
 pub mod scene_file;
 pub mod settings;

@@ -168,7 +168,9 @@ impl Reader<'_> {
         if self.find(name).is_some() {
             return self.own(name, value);
         }
-        let is_switch = |flag: &Flag| matches!(flag.value, Value::Switch) && self.find(flag.name()).is_some();
+        let is_switch = |flag: &Flag| {
+            (matches!(flag.value, Value::Switch) || flag.name() == "box") && self.find(flag.name()).is_some()
+        };
         if let Some(flag) = name.strip_prefix("no-").and_then(Flag::of_name).filter(|flag| is_switch(flag)) {
             self.give(flag.name(), "false");
             return Ok(());
@@ -352,6 +354,7 @@ mod tests {
             ("render --range 2% 98% a.xyz --eye 0 -1 8", "render --range=2%,98% a.xyz --eye=0,-1,8"),
             ("render --size 800 600 --view 30 20 7", "render --size=800,600 --view=30,20 7"),
             ("render a.xyz --no-denoise --no-legend", "render a.xyz --denoise=false --no-legend"),
+            ("a.xyz --no-box", "render a.xyz --box=false"),
             ("render a.xyz --cmap --log", "render a.xyz --cmap --log"),
             ("render a.xyz -- --bonds 1", "render a.xyz -- --bonds 1"),
             ("info Cargo.toml --bonds 1", "info Cargo.toml --bonds 1"),

@@ -14,6 +14,7 @@ pub use arrows::Arrows;
 pub use bonds::StickSize;
 pub use bonds::{BondLength, Bonds};
 pub(crate) use bonds::{bonded_pairs, radius_factor};
+pub(crate) use neighbours::contacts;
 pub use shapes::{AddError, AddedShapes, ArrowKey};
 
 use glam::DVec3;

@@ -100,6 +100,19 @@ pub(super) fn neighbours(
     Ok(result)
 }
 
+/// Pairs of spheres as [`neighbours`] finds them, each with the centre of the second if that is an image; `None` if there
+/// are too many.
+pub(crate) fn contacts(
+    data: &Dataset,
+    reach: f64,
+    is_pair: impl Fn(u32, u32, f64) -> bool,
+) -> Option<Vec<(u32, u32, Option<DVec3>)>> {
+    let points: Vec<DVec3> = (0..data.spheres.len()).map(|index| data.center(index)).collect();
+    let Neighbours { within, across } = neighbours(data, &points, reach, is_pair).ok()?;
+    let within = within.into_iter().map(|[a, b]| (a, b, None));
+    Some(within.chain(across.into_iter().map(|(a, b, image)| (a, b, Some(image)))).collect())
+}
+
 /// The most pairs for each point, on average. The densest packing of equal spheres has 6 pairs of neighbours for each.
 const MOST_PAIRS: usize = 16;
 

@@ -1,6 +1,6 @@
 //! The contents of a file of spheres.
 
-use glam::DVec3;
+use glam::{DVec3, Vec3};
 
 use super::bonds;
 use super::elements::UnknownSpecies;
@@ -163,6 +163,11 @@ impl Dataset {
         }
     }
 
+    /// Returns true if nothing gives the radii of species that are not chemical elements.
+    pub(crate) fn lacks_radii(&self) -> bool {
+        self.unknown.as_ref().is_some_and(UnknownSpecies::lack_radii)
+    }
+
     /// Removes notes made obsolete by colours or radii from elsewhere: for all spheres, or for the species for which
     /// `is_given` is true.
     pub fn correct_notes(&mut self, has_colors: bool, has_radii: bool, is_given: impl Fn(&str) -> bool) {
@@ -214,7 +219,7 @@ impl Dataset {
 
     /// Replaces the spheres by those with these indices, which may occur several times, with all their values. Bonds are
     /// lost, as nothing says which of equal ends they join. Indices that no sphere has are left out.
-    pub(super) fn repeat(&mut self, indices: &[u32]) {
+    pub(crate) fn repeat(&mut self, indices: &[u32]) {
         match &mut self.spheres {
             SphereArray::F32(spheres) => *spheres = taken(spheres, indices),
             SphereArray::F64(spheres) => *spheres = taken(spheres, indices),
@@ -228,6 +233,20 @@ impl Dataset {
             }
         }
         self.bonds.clear();
+    }
+
+    /// Moves the centres of all spheres.
+    pub(crate) fn move_centers(&mut self, to: impl Fn(usize, DVec3) -> DVec3) {
+        match &mut self.spheres {
+            SphereArray::F64(all) => all.iter_mut().enumerate().for_each(|(index, sphere)| {
+                let center = to(index, DVec3::new(sphere[0], sphere[1], sphere[2]));
+                sphere[..3].copy_from_slice(&center.to_array());
+            }),
+            SphereArray::F32(all) => all.iter_mut().enumerate().for_each(|(index, sphere)| {
+                let center = to(index, Vec3::new(sphere[0], sphere[1], sphere[2]).as_dvec3());
+                sphere[..3].copy_from_slice(&center.as_vec3().to_array());
+            }),
+        }
     }
 
     /// Iterates over the spheres. If the file gives no colours, every sphere gets `color`.

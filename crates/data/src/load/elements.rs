@@ -156,6 +156,11 @@ impl UnknownSpecies {
         Self::new(names, self.lacks_color && !has_colors, self.lacks_radius && !has_radii)
     }
 
+    /// Returns true if they lack a radius.
+    pub(super) fn lack_radii(&self) -> bool {
+        self.lacks_radius
+    }
+
     /// The note about these species, on one line however many there are.
     pub(super) fn note(&self) -> String {
         let named = first_names(self.names.iter().map(|name| shortened(name)));

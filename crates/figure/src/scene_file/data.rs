@@ -9,6 +9,7 @@ use crate::color_by::Mapping;
 use pinhole::image::color::LinearRgb;
 use pinhole::scene::material::SurfaceProperties;
 use pinhole_data::added::{Additions, Arrows, BondLength, Bonds, CellEdges};
+use pinhole_data::replicate::Replicate;
 use pinhole_data::select::Selection;
 
 /// A reference to a data file, and the keys of the scene file that concern its spheres.
@@ -39,6 +40,8 @@ pub struct Data {
     pub elements_by: Vec<String>,
     /// Spheres to leave out, as pairs of a column and values of that column.
     pub leave_out: Vec<(String, Vec<String>)>,
+    /// How many cells there are of periodic data.
+    pub replicate: Option<Replicate>,
     /// Which spheres are kept; all if there is no such expression.
     pub select: Option<Selection>,
     /// Rules for what is drawn, and as what. Without any, all spheres are drawn as spheres, or as balls where there are
@@ -97,6 +100,7 @@ impl Data {
             elements: Vec::new(),
             elements_by: Vec::new(),
             leave_out: Vec::new(),
+            replicate: None,
             select: None,
             shows: Vec::new(),
             focus: None,

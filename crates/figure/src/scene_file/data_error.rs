@@ -3,6 +3,7 @@
 use crate::color_by::ColorByError;
 use pinhole::scene::SceneError;
 use pinhole_data::added::AddError;
+use pinhole_data::replicate::ReplicateError;
 use pinhole_data::select::SelectError;
 
 /// The reason why the keys of a scene file and its data do not make a scene.
@@ -15,6 +16,9 @@ pub enum DataError {
     /// A selection of a rule for what is drawn does not apply to the data.
     #[error("`show`: {0}")]
     Show(SelectError),
+    /// The data has no cell that can be repeated.
+    #[error("`replicate`: {0}")]
+    Replicate(ReplicateError),
     /// The selection of what a camera frames does not apply to the data, or selects nothing.
     #[error("`focus`: {0}")]
     Focus(SelectError),

@@ -46,7 +46,7 @@ impl Data {
         kinds
     }
 
-    /// Makes the scene of data. `select` and `leave_out` take spheres away. Columns decide colours, radii, opacities and
+    /// Makes the scene of data. `replicate` repeats its spheres, and then `select` and `leave_out` take spheres away. Columns decide colours, radii, opacities and
     /// strengths of light, then the tables of elements, then the file, and last the keys for all spheres. Opacities of
     /// the file are multiplied by those of the keys. Bonds, the edges of the cell and arrows come last.
     ///
@@ -56,6 +56,9 @@ impl Data {
     /// If a key names a column that the data does not have, or whose values cannot be used; if it selects nothing; if
     /// the data lacks what bonds, a box or arrows need; or if a sphere is out of range.
     pub fn scene(&self, mut loaded: Dataset, own: &OwnShapes) -> Result<DataScene, DataError> {
+        if let Some(replicate) = self.replicate {
+            replicate.apply(&mut loaded).map_err(DataError::Replicate)?;
+        }
         let kept = self.select.as_ref().map(|select| select.apply(&mut loaded)).transpose()?;
         let has_radii = self.mapping.radius.is_some();
         let by_species = self.elements_by.is_empty() || self.elements_by.iter().any(|column| column == "species");

@@ -30,6 +30,7 @@ use pinhole::render::{PathTracing, Sampling, Shading, Studio};
 use pinhole::scene::material::SurfaceProperties;
 use pinhole_data::added::Additions;
 use pinhole_data::load::FORMATS;
+use pinhole_data::replicate::Replicate;
 use pinhole_data::select::NamedSelections;
 
 /// All keys and tables at the top level of a scene file.
@@ -68,6 +69,11 @@ pub(crate) struct Document {
     pub(super) elements_by: Option<Vec<String>>,
     /// Spheres to leave out: values by the names of their columns.
     pub(super) leave_out: Option<BTreeMap<String, Vec<String>>>,
+    /// How many cells of periodic data there are along each edge, such as `2x2x1`; or `faces`, which repeats spheres at a
+    /// face of the cell at the opposite one.
+    pub(super) replicate: Option<String>,
+    /// The kind of a data file that no scene file describes, which `--kind` names. It applies to nothing else.
+    pub(super) kind: Option<String>,
     /// An expression that is true for the spheres to keep.
     pub(super) select: Option<String>,
     /// Selections by names, which other selections may use.
@@ -147,7 +153,7 @@ pub(crate) struct Document {
 }
 
 /// The keys at the top of a scene file that apply to its data, beside the tables `[elements.NAME]`.
-pub const KEYS_OF_DATA: [&str; 22] = [
+pub const KEYS_OF_DATA: [&str; 23] = [
     "format",
     "frame",
     "topology",
@@ -163,6 +169,7 @@ pub const KEYS_OF_DATA: [&str; 22] = [
     "radius_by",
     "opacity_by",
     "emission_by",
+    "replicate",
     "select",
     "selections",
     "show",
@@ -176,6 +183,11 @@ impl Document {
     /// The data with the keys that concern it; `None` if there is none.
     pub(super) fn data(&self, layers: &Joined<'_>) -> Result<Option<WithSpan<Data>>, SceneFileError> {
         let places = &layers.places;
+        if layers.in_file.has("kind") {
+            let message = "`kind` applies to data files without a scene; remove it, and write the settings that --print-scene \
+                           shows for a kind";
+            return Err(places.span("kind").error(message));
+        }
         let Some(file) = self.data.clone() else {
             let is_given = |key: &&str| places.keys.has(key);
             let element = self.elements.keys().next().map(|name| format!("elements.{name}"));
@@ -240,8 +252,11 @@ impl Document {
                 false => Err(places.span("format").error(unknown("format", name, &known))),
             }
         });
+        let replicate = self.replicate.as_ref().map(|text| text.parse::<Replicate>());
+        let replicate = replicate.transpose().map_err(|error| places.span("replicate").error(error))?;
         Ok(Data {
             file,
+            replicate,
             format: format.transpose()?,
             frame: self.frame,
             topology: self.topology.clone(),

@@ -34,6 +34,7 @@ impl SceneFile {
         let lights = || lights.iter().map(|light| Table(LightTable::of(light))).collect();
         let mut document = Document {
             style: None,
+            kind: None,
             integrator: Some(IntegratorKind::of(integrator)),
             shading: settings.primary().map(|primary| primary.shading),
             background: Some(*background),

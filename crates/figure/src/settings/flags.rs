@@ -2,6 +2,7 @@
 //! the value, and its help.
 
 use pinhole::camera::CameraKind;
+use pinhole_data::kind::Kind;
 use pinhole_data::load::{FORMATS, Format};
 
 use super::layers::Layer;
@@ -118,6 +119,10 @@ fn formats() -> Vec<(&'static str, &'static str)> {
     FORMATS.iter().map(|Format { name, about, .. }| (*name, *about)).collect()
 }
 
+fn kinds() -> Vec<(&'static str, &'static str)> {
+    Kind::ALL.iter().map(|kind| (kind.name(), "")).collect()
+}
+
 fn cameras() -> Vec<(&'static str, &'static str)> {
     CameraKind::ALL.iter().map(|kind| (kind.name(), "")).collect()
 }
@@ -173,6 +178,9 @@ flags! {
     Input {
         "--format" "format", OneOf(formats), "FORMAT",
             "Format of the data file, whatever its extension is";
+        "--kind" "kind", OneOf(kinds), "KIND",
+            "What the data is, which decides what is drawn, its colors and the view where no other flag does; `plain` leaves \
+             the data as it is [default: follows from the data]";
         "--topology" "topology", Text, "FILE",
             "File that says what the spheres of a trajectory are, for formats that have positions alone";
         "--columns" "columns", Words(words::names), "NAMES",
@@ -257,10 +265,14 @@ flags! {
             "Do not draw the spheres for which an expression is true; they still count for distances in selections";
         "--ghost" "show", Keys(words::ghost), "EXPRESSION",
             "Draw the spheres for which an expression is true faintly";
+        "--replicate" "replicate", Text, "AxBxC",
+            "Repeat the spheres of a periodic cell this many times along its edges, such as 2x2x1; `faces` repeats those at a \
+             face of the cell at the opposite one";
         "--focus" "focus", Text, "EXPRESSION",
             "Frame only the spheres for which an expression is true, whatever else is drawn";
         "--box" "box", Words(words::cell), "WIDTH" (""),
-            "Draw the edges of the file's periodic cell, with this width [without a width: 1/300 of the cell's diagonal]";
+            "Draw the edges of the file's periodic cell, with this width; --no-box draws none [without a width: 1/300 of the \
+             cell's diagonal]";
         "--bonds" "bonds", Words(words::bonds), "FACTOR" (""),
             "Draw balls and sticks: bonds between atoms that are closer than FACTOR times the sum of their covalent radii, \
              except between hydrogens; atoms become smaller unless their radii are given [without a factor: 1.2]";

@@ -131,6 +131,7 @@ fn positive(text: &str) -> Result<String, String> {
 pub(super) fn cell(text: &str) -> Result<String, String> {
     match text {
         "" => Ok("true".to_owned()),
+        "false" => Ok("false".to_owned()),
         width => positive(width).map(|width| format!("{{ width = {width} }}")),
     }
 }

@@ -80,11 +80,19 @@ impl FrameReader for MmCif {
         let end = frames.get(last + 1).map_or(self.end, |next| next.bytes.start);
         let after = bytes(source, &(frames[last].bytes.end..end))?;
         let mut links = links::links(links::last_block(&before), lines_of_rows)?;
-        let lines_after = frames[last].lines_before + count_lines(&bytes(source, &frames[last].bytes)?);
-        if self.is_whole && (header.cell()?.is_none() || links::are_in(&after)) {
-            header.add_after(&after, lines_after)?;
+        let is_fractional = header.columns.as_ref().is_some_and(|columns| columns.is_fractional);
+        let mut symmetry = Symmetry::default();
+        if is_fractional {
+            symmetry.add(without_byte_order_mark(&before), lines, false)?;
+        }
+        if self.is_whole && (is_fractional || header.cell()?.is_none() || links::are_in(&after)) {
+            let lines = frames[last].lines_before + count_lines(&bytes(source, &frames[last].bytes)?);
+            header.add_after(&after, lines)?;
             let block = links::first_block(&after);
-            links.extend(links::links(block, lines_after + count_lines(block))?);
+            links.extend(links::links(block, lines + count_lines(block))?);
+            if is_fractional {
+                symmetry.add(&after, lines, true)?;
+            }
         }
         let cell = header.cell()?;
         let columns = header.columns.ok_or_else(no_atoms)?;
@@ -98,14 +106,8 @@ impl FrameReader for MmCif {
                 .push(format!("bonds of _struct_conn are left out, because their atoms are not there: {missing}"));
         }
         loaded.cell = cell;
-        loaded.is_part_of_crystal = !columns.is_fractional;
-        if columns.is_fractional {
-            let mut symmetry = Symmetry::default();
-            let block = links::last_block(&before);
-            symmetry.add(block, lines_of_rows.saturating_sub(count_lines(block)))?;
-            if self.is_whole {
-                symmetry.add(links::first_block(&after), lines_after)?;
-            }
+        loaded.is_part_of_crystal = !is_fractional;
+        if is_fractional {
             symmetry.fill(&mut loaded)?;
         }
         Ok(loaded)

@@ -30,6 +30,10 @@ pub(super) fn last_block(text: &[u8]) -> &[u8] {
 
 /// The part of a text that belongs to the block at its start.
 pub(super) fn first_block(text: &[u8]) -> &[u8] {
+    if text.starts_with(b"data_") {
+        // The rows of atoms end their block.
+        return &[];
+    }
     memmem::find(text, b"\ndata_").map_or(text, |start| &text[..start])
 }
 

@@ -6,7 +6,6 @@ use super::tokens::{Place, Token, Tokens, is_unknown};
 use crate::load::error::LoadError;
 use crate::load::{Column, ColumnValues, Dataset};
 use pinhole::internals::text::{one_line, shortened};
-use pinhole::scene::sphere_array::SphereArray;
 
 /// The names of the item with an operator as text, in lower case.
 const OPERATORS: [&[u8]; 4] = [
@@ -16,8 +15,16 @@ const OPERATORS: [&[u8]; 4] = [
     b"_space_group_symop.operation_xyz",
 ];
 
-/// The names of the item with the symbol of the space group, in lower case.
-const GROUPS: [&[u8]; 4] = [
+/// The names of the item with the symbol or the number of the space group, in lower case. Later ones are preferred.
+const GROUPS: [&[u8]; 12] = [
+    b"_symmetry_int_tables_number",
+    b"_space_group_it_number",
+    b"_symmetry.int_tables_number",
+    b"_space_group.it_number",
+    b"_symmetry_space_group_name_hall",
+    b"_space_group_name_hall",
+    b"_symmetry.space_group_name_hall",
+    b"_space_group.name_hall",
     b"_symmetry_space_group_name_h-m",
     b"_space_group_name_h-m_alt",
     b"_symmetry.space_group_name_h-m",
@@ -29,7 +36,10 @@ const GROUPS: [&[u8]; 4] = [
 const SAME: f64 = 0.05;
 
 /// The most atoms in a cell.
-const MOST: usize = 50_000_000;
+const MOST: usize = 10_000_000;
+
+/// The most operators. No space group has more than 192 in its usual cell, and images of an atom are compared in pairs.
+const MOST_OPERATORS: usize = 1000;
 
 /// An operator on fractions of the edges of a cell: a matrix and a shift.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -41,14 +51,18 @@ pub(super) struct Operator {
 /// The symmetry that a file states.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub(super) struct Symmetry {
+    /// Different operators, with shifts from 0 to 1.
     operators: Vec<Operator>,
-    /// The symbol of the space group.
-    group: Option<String>,
+    /// The symbol of the space group, or its number, with its place in the list of names.
+    group: Option<(usize, String)>,
+    /// The first operator that is none. It is an error only if the block of the atoms has it.
+    wrong: Option<LoadError>,
 }
 
 impl Symmetry {
-    /// Reads what the text of a block says, and adds it. The text begins after some lines.
-    pub(super) fn add(&mut self, text: &[u8], lines_before: usize) -> Result<(), LoadError> {
+    /// Adds what a text says that begins after some lines. Another block ends it if `to_block` is true; otherwise what
+    /// stands before the block is forgotten.
+    pub(super) fn add(&mut self, text: &[u8], lines_before: usize, to_block: bool) -> Result<(), LoadError> {
         let mut tokens = Tokens::new(text, lines_before);
         // The names of a loop, or the one before a value, and how many values followed.
         let (mut names, mut values, mut is_loop) = (Vec::new(), 0, false);
@@ -61,39 +75,64 @@ impl Symmetry {
             match token {
                 Token::Name(name) => names.push(name.to_ascii_lowercase()),
                 Token::Value(value) => {
-                    if let Some(name) = names.get(values % names.len().max(1)) {
-                        self.take(name, value, place)?;
+                    if let Some(name) = names.get(values % names.len().max(1))
+                        && !is_unknown(value)
+                    {
+                        self.take(name, value, place);
                     }
                     values += 1;
                 }
-                Token::Loop | Token::Data | Token::Other => {}
+                Token::Data if to_block => return Ok(()),
+                Token::Data => *self = Self::default(),
+                Token::Loop | Token::Other => {}
             }
         }
     }
 
-    fn take(&mut self, name: &[u8], value: &[u8], place: Place) -> Result<(), LoadError> {
+    fn take(&mut self, name: &[u8], value: &[u8], place: Place) {
         let text = String::from_utf8_lossy(value);
-        if OPERATORS.contains(&name) {
+        // After an error, further operators do not count.
+        if OPERATORS.contains(&name) && self.wrong.is_none() {
             let text = one_line(&text);
-            let wrong = || {
-                let text = shortened(&text);
-                let message = format!("`{text}` is no operator of a symmetry; write one such as -x,y+1/2,z");
-                LoadError::at(place.of_error(), message)
-            };
-            self.operators.push(Operator::of(&text).ok_or_else(wrong)?);
-        } else if GROUPS.contains(&name) && !is_unknown(value) {
-            self.group = Some(text.split_whitespace().collect::<Vec<_>>().join(" "));
+            let found = Operator::of(&text).map(|Operator { matrix, shift }| {
+                // Files list some operators twice, under the old and the new name.
+                Operator { matrix, shift: shift - shift.floor() }
+            });
+            let wrong = |message: String| Some(LoadError::at(place.of_error(), message));
+            match found {
+                Some(operator) if self.operators.contains(&operator) => {}
+                Some(_) if self.operators.len() == MOST_OPERATORS => {
+                    self.wrong = wrong(format!(
+                        "there are more than {MOST_OPERATORS} operators of symmetry, but no space group has more than 192; \
+                         remove those that are too many"
+                    ));
+                }
+                Some(operator) => self.operators.push(operator),
+                None => {
+                    self.wrong = wrong(format!(
+                        "`{}` is no operator of a symmetry; write one such as -x,y+1/2,z, in quotes if it has blanks",
+                        shortened(&text)
+                    ));
+                }
+            }
+        } else if let Some(rank) = GROUPS.iter().position(|known| *known == name)
+            && self.group.as_ref().is_none_or(|(former, _)| *former <= rank)
+        {
+            self.group = Some((rank, text.split_whitespace().collect::<Vec<_>>().join(" ")));
         }
-        Ok(())
     }
 
     /// Adds the atoms of the cell that follow from those that are there. If there are several operators, all atoms are
     /// moved into the cell, and the column `symmetry` has the numbers of their operators, counted from 1.
     pub(super) fn fill(&self, data: &mut Dataset) -> Result<(), LoadError> {
+        if let Some(wrong) = &self.wrong {
+            return Err(wrong.clone());
+        }
         let Some(cell) = data.cell.map(|edges| DMat3::from_cols_array_2d(&edges)) else { return Ok(()) };
+        let group = self.group.as_ref().map(|(_, group)| group.as_str());
         if self.operators.is_empty() {
-            let group = self.group.as_deref().unwrap_or_default();
-            if group.replace(' ', "").eq_ignore_ascii_case("P1") {
+            let group = group.unwrap_or_default();
+            if matches!(group.replace(' ', "").as_str(), "P1" | "p1" | "1") {
                 return Ok(());
             }
             let what = match group {
@@ -118,7 +157,9 @@ impl Symmetry {
         let count = data.spheres.len();
         if count.saturating_mul(self.operators.len()) > MOST {
             let operators = self.operators.len();
-            return Err(LoadError::new(format!("{operators} operators of {count} atoms make too many atoms")));
+            return Err(LoadError::new(format!(
+                "{operators} operators of {count} atoms make more than {MOST} atoms; list fewer atoms or operators"
+            )));
         }
         let mut of: Vec<u32> = Vec::new();
         let mut numbers: Vec<f64> = Vec::new();
@@ -144,16 +185,9 @@ impl Symmetry {
             }
         }
         data.repeat(&of);
-        match &mut data.spheres {
-            SphereArray::F64(all) => {
-                all.iter_mut().zip(&centers).for_each(|(to, at)| to[..3].copy_from_slice(&at.to_array()));
-            }
-            SphereArray::F32(all) => {
-                all.iter_mut().zip(&centers).for_each(|(to, at)| to[..3].copy_from_slice(&at.as_vec3().to_array()));
-            }
-        }
+        data.move_centers(|index, center| centers.get(index).copied().unwrap_or(center));
         data.columns.push(Column { name: "symmetry".to_owned(), values: ColumnValues::Numbers(numbers) });
-        let name = self.group.as_ref().map_or(String::new(), |group| format!(" of {}", shortened(&one_line(group))));
+        let name = group.map_or(String::new(), |group| format!(" of {}", shortened(&one_line(group))));
         data.notes.push(format!(
             "the {} operators{name} make {} atoms of the {count} that the file lists",
             self.operators.len(),
@@ -345,6 +379,63 @@ mod tests {
         assert_eq!(note(&named("?")), format!("the file says nothing of a symmetry, {remedy}"));
         let wrong = format!("{}{}", list(&["x,y,z", "x,y,2"]), named("P -1"));
         let error = read(&wrong).unwrap_err().to_string();
-        assert_eq!(error, "line 5, column 1: `x,y,2` is no operator of a symmetry; write one such as -x,y+1/2,z");
+        assert_eq!(
+            error,
+            "line 5, column 1: `x,y,2` is no operator of a symmetry; write one such as -x,y+1/2,z, in quotes if it has blanks"
+        );
+    }
+
+    #[test]
+    fn blocks_have_their_own_symmetry() {
+        let remarks = "_remark\n;\ndata_old\na \"quote that does not end\n;\n";
+        let block =
+            |keyword: &str, first: &str, last: &str| format!("{keyword}\n{first}\n{RUTILE}{RUTILE_ATOMS}{last}");
+        let two = list(&["x,y,z", "-x,-y,z+1/2"]);
+        // What stands in one block, also what is wrong there, is nothing to another.
+        let wrong = list(&["x,y,z", "x,y"]);
+        for (text, atoms) in [
+            (block("data_a", &list(&["x,y,z"]), "") + &block("data_b", &two, ""), [2, 4]),
+            (block("DATA_a", "", &two) + &block("DATA_b", &list(&["x,y,z"]), ""), [4, 2]),
+            (block("data_a", &two, remarks) + &block("data_b", remarks, &two), [4, 4]),
+            (block("data_a", &two, "") + &block("data_b", &wrong, ""), [4, 0]),
+            (block("data_a", "", &wrong) + &block("data_b", &two, ""), [0, 4]),
+        ] {
+            for (frame, expected) in atoms.into_iter().enumerate() {
+                let options = Options::default().with_frame(frame);
+                let found = load::from_bytes(text.as_bytes(), "a.cif", &options).map(|data| data.spheres.len());
+                assert_eq!(found.clone().unwrap_or(0), expected, "frame {frame} of {text}: {found:?}");
+            }
+        }
+    }
+
+    #[test]
+    fn repeated_and_unknown_operators_add_nothing() {
+        let note = |text: &str| read(&format!("{RUTILE}{text}{RUTILE_ATOMS}")).map(|data| data.notes.join("; "));
+        let one = list(&["x,y,z"]);
+        assert_eq!(
+            note(&format!("{one}{}", one.replace("_symmetry_equiv_pos_as", "_space_group_symop_operation"))),
+            note(&one)
+        );
+        assert_eq!(note(&list(&["x,y,z", "x+1,y,z-1"])), Ok(String::new()));
+        let unknown = "_symmetry_equiv_pos_as_xyz ?\n_symmetry_Int_Tables_number 136\n";
+        assert!(note(unknown).unwrap().starts_with("the file names the space group P 42/m n m but"));
+        let many: Vec<String> = (0..=MOST_OPERATORS).map(|number| format!("x+{number}/2000,y,z")).collect();
+        let error = note(&list(&many)).unwrap_err().to_string();
+        assert!(error.starts_with("line 1011, column 1: there are more than 1000 operators"), "{error}");
+        let error = note("loop_\n_symmetry_equiv_pos_as_xyz\nx, y, z\n").unwrap_err().to_string();
+        assert!(error.contains("`x,` is no operator"), "{error}");
+    }
+
+    /// Texts of the letters of operators in any order.
+    #[test]
+    fn any_text_is_an_operator_or_none() {
+        let mut random = fastrand::Rng::with_seed(5);
+        let letters: Vec<char> = "xyzXYZ+-/.,,0123456789 \n\u{130}\u{df}".chars().collect();
+        for _ in 0..100_000 {
+            let text: String = (0..random.usize(..24)).filter_map(|_| random.choice(&letters)).collect();
+            if let Some(Operator { matrix, shift }) = Operator::of(&text) {
+                assert!(matrix.is_finite() && shift.is_finite(), "{text}");
+            }
+        }
     }
 }

@@ -1,0 +1,343 @@
+//! Kinds of data, such as crystals and biomolecules, which are drawn in different ways if nobody says how.
+
+mod whole;
+
+use glam::{DMat3, DVec3};
+
+use crate::load::{ColumnValues, Dataset, element_symbol, is_metal};
+use crate::select::Selection;
+
+/// A kind of data.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Kind {
+    /// Residues whose spheres are groups of atoms, such as beads of Martini, or CA alone.
+    Coarse,
+    /// At least three residues of protein or nucleic acid.
+    Biomolecule,
+    /// A periodic cell of atoms with an empty layer.
+    Slab,
+    /// A small periodic cell of atoms that are joined to their images.
+    Crystal,
+    /// Few atoms that form molecules.
+    Molecules,
+    /// Many atoms that form molecules.
+    Liquid,
+    /// Other atoms.
+    Atoms,
+    /// Spheres with different kinds in a cell, which are no atoms.
+    Particles,
+    /// Many points of which a few are far away.
+    Stars,
+    /// Anything else.
+    Plain,
+}
+
+impl Kind {
+    /// All kinds, in the order in which they are tried.
+    pub const ALL: [Self; 10] = [
+        Self::Coarse,
+        Self::Biomolecule,
+        Self::Slab,
+        Self::Crystal,
+        Self::Molecules,
+        Self::Liquid,
+        Self::Atoms,
+        Self::Particles,
+        Self::Stars,
+        Self::Plain,
+    ];
+
+    /// The name.
+    #[must_use]
+    pub fn name(self) -> &'static str {
+        match self {
+            Self::Coarse => "coarse",
+            Self::Biomolecule => "biomolecule",
+            Self::Slab => "slab",
+            Self::Crystal => "crystal",
+            Self::Molecules => "molecules",
+            Self::Liquid => "liquid",
+            Self::Atoms => "atoms",
+            Self::Particles => "particles",
+            Self::Stars => "stars",
+            Self::Plain => "plain",
+        }
+    }
+
+    /// The kind with this name.
+    #[must_use]
+    pub fn of_name(name: &str) -> Option<Self> {
+        Self::ALL.into_iter().find(|kind| kind.name() == name)
+    }
+}
+
+/// The least width of the empty layer of a slab, in Å.
+const GAP: f64 = 6.0;
+
+/// Distances between neighbouring atoms, in Å, and those between beads.
+const ATOMS: std::ops::Range<f64> = 0.6..5.5;
+const BEADS: f64 = 2.0;
+
+/// The most atoms of a crystal, and of molecules that are drawn as balls.
+const CRYSTAL: usize = 2_000;
+const MOLECULES: usize = 5_000;
+
+/// The most atoms that are searched for molecules.
+const SEARCHED: usize = 200_000;
+
+/// The fewest points that may be stars.
+const STARS: usize = 20_000;
+
+/// The fewest spheres of which a few may lie outside the picture, and the parts of all between which the others lie.
+const FRAMED: usize = 1_000;
+const WITHIN: [f64; 2] = [0.005, 0.995];
+const STARS_WITHIN: [f64; 2] = [0.05, 0.95];
+
+/// What is known of data, by which its kind is chosen.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Traits {
+    /// The kind.
+    pub kind: Kind,
+    /// Returns true if the data has a periodic cell of its own, and not that of a crystal of which it is a part.
+    pub has_cell: bool,
+    /// The median distance to the nearest neighbour.
+    pub spacing: f64,
+    /// The direction, of length 1, in which the widest empty layer of the cell lies; that of the third edge if there is
+    /// none.
+    pub up: DVec3,
+    /// Returns true if most atoms are metals.
+    pub is_metal: bool,
+    /// Returns true if residues of polymers have several chains.
+    pub has_chains: bool,
+    /// Returns true if there is water, and something else.
+    pub has_water: bool,
+    /// Returns true if there are residues that are neither polymers nor water.
+    pub has_ligands: bool,
+    /// Returns true if more than a tenth of the spheres have a species that is no element, and nothing gives radii.
+    pub has_beads: bool,
+    /// Two corners of the box in which nearly all centres lie, if some lie so far away that all would be small in a
+    /// picture.
+    pub bulk: Option<[DVec3; 2]>,
+}
+
+impl Traits {
+    /// Finds the kind of data.
+    #[must_use]
+    pub fn of(data: &Dataset) -> Self {
+        let (count, spacing) = (data.spheres.len(), data.spacing());
+        let species = data.labels("species");
+        let are_elements = species.is_some_and(|labels| labels.names.iter().all(|name| element_symbol(name).is_some()));
+        let are_atoms = are_elements && ATOMS.contains(&spacing);
+        let residues = data.labels("residue").map_or(0, |labels| {
+            let has_name = |index: &&u32| labels.names.get(**index as usize).is_some_and(|name| !name.is_empty());
+            labels.indices.iter().filter(has_name).count()
+        });
+        let has_residues = count > 0 && 2 * residues >= count;
+        let polymer = if has_residues { matches("polymer", data) } else { Vec::new() };
+        let water = if has_residues { matches("water", data) } else { Vec::new() };
+        let edges = data.cell.filter(|_| !data.is_part_of_crystal && data.is_periodic.contains(&true));
+        let cell = edges.map(|edges| DMat3::from_cols_array_2d(&edges)).filter(|cell| cell.determinant().is_normal());
+        let (gap, gap_up) = cell.map_or((0.0, DVec3::Z), |cell| widest_gap(data, &cell));
+        let third = cell.and_then(|cell| cell.z_axis.try_normalize()).unwrap_or(DVec3::Z);
+        let with_species = |is: fn(Option<&'static str>) -> bool| {
+            species.map_or(0, |labels| {
+                let is: Vec<bool> = labels.names.iter().map(|name| is(element_symbol(name))).collect();
+                labels.indices.iter().filter(|index| is.get(**index as usize) == Some(&true)).count()
+            })
+        };
+        let metals = with_species(|symbol| symbol.is_some_and(is_metal));
+        let has_beads = !has_residues && data.lacks_radii() && 10 * with_species(|symbol| symbol.is_none()) > count;
+        let kind = if count < 2 {
+            Kind::Plain
+        } else if has_residues && residues_of(data, &polymer) >= 3 && (!are_atoms || spacing >= BEADS) {
+            Kind::Coarse
+        } else if has_residues && residues_of(data, &polymer) >= 3 {
+            Kind::Biomolecule
+        } else if are_atoms && cell.is_some() && gap >= GAP && whole::reaches_itself(data) {
+            Kind::Slab
+        } else if are_atoms && cell.is_some() && count <= CRYSTAL && whole::reaches_itself(data) {
+            Kind::Crystal
+        } else if are_atoms && count <= MOLECULES {
+            Kind::Molecules
+        } else if are_atoms && count <= SEARCHED && !whole::reaches_itself(data) {
+            Kind::Liquid
+        } else if are_atoms {
+            Kind::Atoms
+        } else if cell.is_some() || species.is_some() {
+            Kind::Particles
+        } else if count >= STARS && data.colors.is_none() && bulk(data, STARS_WITHIN).is_some() {
+            Kind::Stars
+        } else {
+            Kind::Plain
+        };
+        Self {
+            kind,
+            has_cell: cell.is_some(),
+            spacing,
+            up: if kind == Kind::Slab { gap_up } else { third },
+            is_metal: 2 * metals > count,
+            has_chains: has_several(data, &polymer),
+            has_water: water.contains(&true) && water.contains(&false),
+            has_ligands: polymer.iter().zip(&water).any(|(is_polymer, is_water)| !is_polymer && !is_water),
+            has_beads,
+            bulk: if count < FRAMED {
+                None
+            } else {
+                bulk(data, if kind == Kind::Stars { STARS_WITHIN } else { WITHIN })
+            },
+        }
+    }
+}
+
+/// The spheres that an expression selects; none if the data lacks what it needs.
+fn matches(expression: &str, data: &Dataset) -> Vec<bool> {
+    let selection = expression.parse::<Selection>();
+    selection.and_then(|selection| selection.matches(data)).map(|(matches, _)| matches).unwrap_or_default()
+}
+
+/// The number of residues, up to three, of the spheres that are chosen.
+fn residues_of(data: &Dataset, is_chosen: &[bool]) -> usize {
+    let Some(ColumnValues::Numbers(numbers)) = data.column("residue_number") else { return 0 };
+    let mut found: Vec<f64> = Vec::new();
+    for (number, _) in numbers.iter().zip(is_chosen).filter(|(_, is)| **is) {
+        if !found.iter().any(|other| other.to_bits() == number.to_bits()) {
+            found.push(*number);
+        }
+        if found.len() == 3 {
+            break;
+        }
+    }
+    found.len()
+}
+
+/// Returns true if the spheres that are chosen belong to several chains.
+fn has_several(data: &Dataset, is_chosen: &[bool]) -> bool {
+    let Some(labels) = data.labels("chain") else { return false };
+    let mut chosen = labels.indices.iter().zip(is_chosen).filter(|(_, is)| **is).map(|(index, _)| index);
+    chosen.next().is_some_and(|first| chosen.any(|other| other != first))
+}
+
+/// The width of the widest layer of the cell without centres, and the direction in which it lies.
+fn widest_gap(data: &Dataset, cell: &DMat3) -> (f64, DVec3) {
+    let rows = cell.inverse().transpose();
+    let mut widest = (0.0, DVec3::Z);
+    for (axis, row) in [rows.x_axis, rows.y_axis, rows.z_axis].into_iter().enumerate() {
+        let mut places: Vec<f64> = (0..data.spheres.len())
+            .map(|index| row.dot(data.center(index)))
+            .filter(|place| place.is_finite())
+            .map(|place| place - place.floor())
+            .collect();
+        places.sort_unstable_by(f64::total_cmp);
+        let (Some(first), Some(last)) = (places.first(), places.last()) else { continue };
+        let across = 1.0 + first - last;
+        let gap = places.windows(2).map(|pair| pair[1] - pair[0]).fold(across, f64::max) / row.length();
+        if gap > widest.0 {
+            widest = (gap, cell.col(axis).dot(row).signum() * row / row.length());
+        }
+    }
+    widest
+}
+
+/// The box between two parts of the centres, in their order along each axis, and a little around it; `None` if that of all
+/// centres is less than twice as long.
+fn bulk(data: &Dataset, [first, last]: [f64; 2]) -> Option<[DVec3; 2]> {
+    let mut corners = [[DVec3::ZERO; 2]; 2];
+    for axis in 0..3 {
+        let places = (0..data.spheres.len()).map(|index| data.center(index)[axis]);
+        let mut all: Vec<f64> = places.filter(|place| place.is_finite()).collect();
+        all.sort_unstable_by(f64::total_cmp);
+        let most = all.len().checked_sub(1)?;
+        let at = |part: f64| all.get((most as f64 * part) as usize).copied();
+        for (corner, part) in corners.iter_mut().flatten().zip([0.0, 1.0, first, last]) {
+            corner[axis] = at(part)?;
+        }
+    }
+    let [whole, [low, high]] = corners;
+    let around = DVec3::splat(0.05 * (high - low).max_element());
+    ((whole[1] - whole[0]).max_element() > 2.0 * (high - low).max_element()).then_some([low - around, high + around])
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::load::{self, Options};
+
+    fn traits(name: &str, text: &str) -> Traits {
+        Traits::of(&load::from_bytes(text.as_bytes(), name, &Options::default()).unwrap())
+    }
+
+    fn kind(name: &str, text: &str) -> Kind {
+        traits(name, text).kind
+    }
+
+    /// A file of atoms in a cubic cell, in which nothing repeats along z if `is_slab`.
+    fn cell(side: f64, height: f64, atoms: &[(&str, [f64; 3])]) -> String {
+        let rows = atoms.iter().map(|(species, [x, y, z])| format!("{species} {x} {y} {z}\n"));
+        let count = atoms.len();
+        format!(
+            "{count}\nLattice=\"{side} 0 0 0 {side} 0 0 0 {height}\" Properties=species:S:1:pos:R:3\n{}",
+            rows.collect::<String>()
+        )
+    }
+
+    const COPPER: [(&str, [f64; 3]); 4] =
+        [("Cu", [0.0; 3]), ("Cu", [0.0, 1.8, 1.8]), ("Cu", [1.8, 0.0, 1.8]), ("Cu", [1.8, 1.8, 0.0])];
+
+    #[test]
+    fn cells_of_atoms_are_crystals_slabs_or_molecules() {
+        assert_eq!(kind("a.xyz", &cell(3.6, 3.6, &COPPER)), Kind::Crystal);
+        let slab = traits("a.xyz", &cell(3.6, 13.6, &COPPER));
+        assert_eq!((slab.kind, slab.up, slab.is_metal), (Kind::Slab, DVec3::Z, true));
+        let water = [("O", [0.0; 3]), ("H", [0.76, 0.59, 0.0]), ("H", [-0.76, 0.59, 0.0])];
+        assert_eq!(kind("a.xyz", &cell(9.0, 9.0, &water)), Kind::Molecules);
+        // A molecule across a face of the cell does not reach its own image, but a chain along an edge does.
+        let across = [("O", [0.0; 3]), ("H", [0.76, 0.59, 0.0]), ("H", [8.24, 0.59, 0.0])];
+        assert_eq!(kind("a.xyz", &cell(9.0, 5.0, &across)), Kind::Molecules);
+        let chain = [("C", [0.0; 3]), ("C", [1.3, 0.0, 0.0]), ("C", [2.6, 0.0, 0.0])];
+        assert_eq!(kind("a.xyz", &cell(3.9, 20.0, &chain)), Kind::Slab);
+    }
+
+    #[test]
+    fn beads_are_particles() {
+        let beads: String =
+            (0..10).map(|i| format!("{} {} 0 0\n", if i % 2 == 0 { "A" } else { "B" }, 3 * i)).collect();
+        let beads = traits("a.xyz", &format!("10\n\n{beads}"));
+        assert_eq!((beads.kind, beads.has_beads), (Kind::Particles, true));
+        // One atom that is a mark only is no bead.
+        let marked: String = (0..20).map(|i| format!("{} {} 0 0\n", if i == 3 { "X" } else { "C" }, i)).collect();
+        assert!(!traits("a.xyz", &format!("20\n\n{marked}")).has_beads);
+        assert_eq!(kind("a.xyz", "1\n\nO 0 0 0\n"), Kind::Plain);
+        assert_eq!(kind("a.xyz", "0\n\n"), Kind::Plain);
+    }
+
+    #[test]
+    fn residues_are_biomolecules_or_coarse() {
+        let atom = |number: usize, name: &str, residue: &str, chain: char, x: f64| {
+            format!("ATOM  {number:5}  {name:<3} {residue} {chain}{number:4}    {x:8.3}   0.000   0.000  1.00  0.00\n")
+        };
+        let chain = |spacing: f64| -> String {
+            (0..6).map(|i| atom(i + 1, "CA", "ALA", if i < 3 { 'A' } else { 'B' }, spacing * i as f64)).collect()
+        };
+        let fine = traits("a.pdb", &chain(1.5));
+        assert_eq!(
+            (fine.kind, fine.has_chains, fine.has_water, fine.has_ligands),
+            (Kind::Biomolecule, true, false, false)
+        );
+        assert_eq!(kind("a.pdb", &chain(3.8)), Kind::Coarse);
+        let with_water =
+            traits("a.pdb", &(chain(1.5) + &atom(9, "O", "HOH", 'A', 30.0) + &atom(10, "FE", "HEM", 'A', 40.0)));
+        assert_eq!((with_water.kind, with_water.has_water, with_water.has_ligands), (Kind::Biomolecule, true, true));
+    }
+
+    #[test]
+    fn a_few_that_are_far_away_are_not_framed() {
+        let rows = |far: f64| -> String {
+            let near = (0..2000).map(|i| format!("{},{},{}\n", i % 10, i / 10 % 10, i / 100));
+            near.chain([format!("{far},0,0\n")]).collect()
+        };
+        let traits = |far: f64| traits("a.csv", &format!("x,y,z\n{}", rows(far)));
+        assert_eq!(traits(12.0).bulk, None);
+        let [low, high] = traits(100.0).bulk.unwrap();
+        assert!((low - DVec3::splat(-0.95)).length() < 1e-9 && (high - DVec3::new(9.95, 9.95, 19.95)).length() < 1e-9);
+    }
+}

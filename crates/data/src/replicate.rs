@@ -1,0 +1,217 @@
+//! Repeats the spheres of a periodic cell.
+
+use std::fmt;
+use std::str::FromStr;
+
+use glam::DVec3;
+
+use crate::cell::PeriodicCell;
+use crate::load::Dataset;
+
+/// How the spheres of a periodic cell are repeated.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Replicate {
+    /// This many cells along each edge.
+    Cells([u32; 3]),
+    /// Spheres at a face, an edge or a corner of the cell are repeated at those opposite, as drawings of crystals show
+    /// them. All spheres are moved into the cell, and the data does not repeat any more.
+    Faces,
+}
+
+/// The most spheres that come out.
+const MOST: usize = 200_000_000;
+
+/// Spheres that are closer to a face than this part of an edge are at it.
+const AT_FACE: f64 = 1e-3;
+
+/// Spheres cannot be repeated.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct ReplicateError(&'static str);
+
+impl fmt::Display for ReplicateError {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.write_str(self.0)
+    }
+}
+
+impl std::error::Error for ReplicateError {}
+
+impl FromStr for Replicate {
+    type Err = ReplicateError;
+
+    fn from_str(text: &str) -> Result<Self, ReplicateError> {
+        let text = text.trim();
+        if text.eq_ignore_ascii_case("faces") {
+            return Ok(Self::Faces);
+        }
+        let counts: Option<Vec<u32>> =
+            text.split(['x', 'X', ',', ' ']).map(|part| part.parse().ok().filter(|count| *count > 0)).collect();
+        match counts.as_deref() {
+            Some(&[count]) => Ok(Self::Cells([count; 3])),
+            Some(&[a, b, c]) => Ok(Self::Cells([a, b, c])),
+            _ => Err(ReplicateError("write the numbers of cells along the edges, such as 2x2x1, or faces")),
+        }
+    }
+}
+
+impl fmt::Display for Replicate {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self {
+            Self::Cells([a, b, c]) => write!(f, "{a}x{b}x{c}"),
+            Self::Faces => f.write_str("faces"),
+        }
+    }
+}
+
+impl Replicate {
+    /// Repeats the spheres of data, with their values. The cell grows with them.
+    ///
+    /// # Errors
+    /// Returns an error if the data has no periodic cell, or too many spheres would come out.
+    pub fn apply(self, data: &mut Dataset) -> Result<(), ReplicateError> {
+        const NO_CELL: ReplicateError = ReplicateError("the data has no periodic cell; leave it out");
+        if data.is_part_of_crystal {
+            return Err(ReplicateError(
+                "the symmetry of the crystal is not applied, so its cell is not full; leave it out",
+            ));
+        }
+        let cell = PeriodicCell::of(data).ok_or(NO_CELL)?;
+        match self {
+            Self::Cells(counts) => cells(data, &cell, counts),
+            Self::Faces => faces(data, &cell),
+        }
+    }
+}
+
+fn cells(data: &mut Dataset, cell: &PeriodicCell, counts: [u32; 3]) -> Result<(), ReplicateError> {
+    if (0..3).any(|axis| counts[axis] > 1 && !data.is_periodic[axis]) {
+        return Err(ReplicateError("the data does not repeat along all of these edges; write 1 for the others"));
+    }
+    let count = data.spheres.len();
+    let copies = counts.iter().try_fold(1_usize, |all, count| all.checked_mul(*count as usize));
+    let total = copies.and_then(|copies| copies.checked_mul(count)).filter(|total| *total <= MOST);
+    let Some((_, copies)) = total.zip(copies) else {
+        return Err(ReplicateError("there would be more than 200 million spheres; choose fewer cells"));
+    };
+    let [a, b, c] = counts.map(u64::from);
+    let turns: Vec<[u64; 3]> = (0..c).flat_map(|z| (0..b).flat_map(move |y| (0..a).map(move |x| [x, y, z]))).collect();
+    // A bond that reaches into another cell joins the copies there.
+    let bonds = std::mem::take(&mut data.bonds);
+    let reaches: Vec<DVec3> = bonds
+        .iter()
+        .map(|[from, to]| cell.turns_to_nearest(data.center(*from as usize), data.center(*to as usize)))
+        .collect();
+    let place = |[x, y, z]: [u64; 3]| (x + a * (y + b * z)) as u32;
+    let mut repeated: Vec<[u32; 2]> = turns
+        .iter()
+        .flat_map(|own| {
+            let bonds = bonds.iter().zip(&reaches);
+            bonds.map(move |([from, to], reach)| {
+                let other =
+                    [0, 1, 2].map(|k| (own[k] as i64 + reach[k] as i64).rem_euclid(i64::from(counts[k])) as u64);
+                let ends = [from + count as u32 * place(*own), to + count as u32 * place(other)];
+                [ends[0].min(ends[1]), ends[0].max(ends[1])]
+            })
+        })
+        .collect();
+    repeated.sort_unstable();
+    repeated.dedup();
+    let indices: Vec<u32> = (0..copies).flat_map(|_| 0..count as u32).collect();
+    data.repeat(&indices);
+    data.bonds = repeated;
+    let shift = |index: usize| cell.edges * DVec3::from(turns[index / count.max(1)].map(|turn| turn as f64));
+    data.move_centers(|index, center| center + shift(index));
+    data.cell = data.cell.map(|edges| [0, 1, 2].map(|axis| edges[axis].map(|part| part * f64::from(counts[axis]))));
+    Ok(())
+}
+
+fn faces(data: &mut Dataset, cell: &PeriodicCell) -> Result<(), ReplicateError> {
+    let inverse = cell.edges.inverse();
+    let origin = DVec3::from(data.cell_origin);
+    let (mut indices, mut centers) = (Vec::new(), Vec::new());
+    for index in 0..data.spheres.len() {
+        let center = data.center(index);
+        let moved = cell.moved(center, -cell.turns(center));
+        let mut place = inverse * (moved - origin);
+        let mut is_at = [false; 3];
+        for axis in 0..3 {
+            // What is rounded at the far face is at the near one.
+            if data.is_periodic[axis] && place[axis] > 1.0 - AT_FACE {
+                place[axis] -= 1.0;
+            }
+            is_at[axis] = data.is_periodic[axis] && place[axis].abs() < AT_FACE;
+        }
+        for corner in 0..8_usize {
+            let of_axis = |axis: usize| corner >> axis & 1 == 1;
+            if (0..3).all(|axis| is_at[axis] || !of_axis(axis)) {
+                let turns = DVec3::from([0, 1, 2].map(|axis| f64::from(u8::from(of_axis(axis)))));
+                indices.push(index as u32);
+                centers.push(origin + cell.edges * (place + turns));
+            }
+        }
+    }
+    if indices.len() > MOST {
+        return Err(ReplicateError("there would be more than 200 million spheres"));
+    }
+    data.repeat(&indices);
+    data.move_centers(|index, center| centers.get(index).copied().unwrap_or(center));
+    data.is_periodic = [false; 3];
+    Ok(())
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::load::{self, Options};
+
+    fn salt() -> Dataset {
+        let text =
+            "2\nLattice=\"4 0 0 1 4 0 0 0 4\" Properties=species:S:1:pos:R:3:q:R:1\nNa 0 0 0 1\nCl 2.5 2 3.9999 2\n";
+        load::from_bytes(text.as_bytes(), "a.xyz", &Options::default()).unwrap()
+    }
+
+    fn centers(data: &Dataset) -> Vec<[f64; 3]> {
+        (0..data.spheres.len()).map(|index| data.center(index).to_array()).collect()
+    }
+
+    #[test]
+    fn cells_are_repeated_with_their_values_and_bonds() {
+        let mut data = salt();
+        data.bonds = vec![[0, 1]];
+        "1x2x1".parse::<Replicate>().unwrap().apply(&mut data).unwrap();
+        assert_eq!(centers(&data), [[0.0; 3], [2.5, 2.0, 3.9999], [1.0, 4.0, 0.0], [3.5, 6.0, 3.9999]]);
+        assert_eq!(data.cell, Some([[4.0, 0.0, 0.0], [2.0, 8.0, 0.0], [0.0, 0.0, 4.0]]));
+        assert_eq!(data.labels("species").unwrap().indices, [0, 1, 0, 1]);
+        assert_eq!(data.bonds, [[0, 1], [2, 3]]);
+        let mut data = salt();
+        data.bonds = vec![[0, 1]];
+        // The nearest image of the second atom is in the cell below.
+        Replicate::Cells([1, 1, 3]).apply(&mut data).unwrap();
+        assert_eq!(data.bonds, [[0, 5], [1, 2], [3, 4]]);
+    }
+
+    #[test]
+    fn faces_are_repeated() {
+        let mut data = salt();
+        Replicate::Faces.apply(&mut data).unwrap();
+        // Eight corners, and the other at two faces.
+        assert_eq!(data.spheres.len(), 10);
+        assert!(centers(&data).contains(&[5.0, 4.0, 4.0]));
+        assert_eq!(data.is_periodic, [false; 3]);
+    }
+
+    #[test]
+    fn what_cannot_be_repeated_is_refused() {
+        for text in ["", "0x1x1", "2x2", "axbxc", "-1", "1x1x1x1", "9999999999"] {
+            assert!(text.parse::<Replicate>().is_err(), "{text}");
+        }
+        assert_eq!("3".parse(), Ok(Replicate::Cells([3; 3])));
+        let refused = |replicate: Replicate, data: &mut Dataset| replicate.apply(data).unwrap_err().to_string();
+        let mut data = salt();
+        assert!(refused(Replicate::Cells([u32::MAX; 3]), &mut data).contains("200 million"));
+        data.is_periodic[2] = false;
+        assert!(refused(Replicate::Cells([1, 1, 2]), &mut data).contains("does not repeat"));
+        data.cell = None;
+        assert!(refused(Replicate::Faces, &mut data).contains("no periodic cell"));
+    }
+}
