@@ -118,7 +118,7 @@ impl Source {
         let settings = file.settings(file.kind(), scene, camera.as_ref(), sky);
         let settings = settings.map_err(|error| self.failure(error))?;
         // A view that follows from the kind of the data need not be said.
-        let of_kind = CameraTable::new(&asked).and_then(|table| file.flag_of(&format!("camera.{}.view", table.kind)));
+        let of_kind = CameraTable::new(&asked).and_then(|table| file.flag_of(&format!("camera.{}.up", table.kind)));
         let has_view = self.has_camera_of_flags(file) && of_kind != Some(KIND);
         let view = if has_view { view_in_flags(&asked, facing) } else { None };
         Ok(Look { camera, eyes, settings, parameters, view })

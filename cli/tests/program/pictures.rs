@@ -239,7 +239,7 @@ fn the_line_about_a_picture_has_flags_to_use_again() {
     let small = "-o out.png --backend cpu --size 20x15 --samples 1";
     let said = |arguments: &str| folder.run(&format!("render {arguments} {small}")).succeeded().said;
     let start = |text: &str| said(text).unwrap().rsplit_once("; ").unwrap().0.to_owned();
-    assert_eq!(start("water.xyz"), "water.xyz: 3 atoms, 2 bonds; --kind molecules --style default --view y");
+    assert_eq!(start("water.xyz"), "water.xyz: 3 atoms, 2 bonds; --kind molecules --style default");
     assert_eq!(
         start("water.xyz --style flat --view 30,20 --turn 5"),
         "water.xyz: 3 atoms, 2 bonds; --kind molecules --style flat --view 30,20 --turn 5"

@@ -2,6 +2,7 @@
 
 use std::borrow::Cow;
 
+use crate::keys::columns_for;
 use crate::load::{Column, ColumnValues};
 use pinhole::internals::text::one_line;
 use pinhole::scene::sphere_array::SphereArray;
@@ -65,7 +66,8 @@ pub enum ColumnError {
 
 /// Finds a column by its name, in upper or lower case. It is one of `columns`, or else one of [`BUILT_IN`]: the index
 /// in input order, the radius and the coordinates of the centre. The name `|v|` gives the length of a vector whose
-/// components are the columns `v.x`, `v.y` and `v.z`, or `vx`, `vy` and `vz`, or `v_x`, `v_y` and `v_z`.
+/// components are the columns `v.x`, `v.y` and `v.z`, or `vx`, `vy` and `vz`, or `v_x`, `v_y` and `v_z`. Words of selections
+/// such as `element` and `resname` find the column that holds what they mean.
 ///
 /// # Errors
 /// Returns an error if there is no such column, or if it does not have one value for each sphere.
@@ -83,6 +85,11 @@ pub fn column<'a>(name: &str, spheres: &SphereArray, columns: &'a [Column]) -> R
         let (vector, [x, y, z]) = vector(name, spheres, columns)?;
         let lengths = x.iter().zip(y).zip(z).map(|((x, y), z)| x.hypot(*y).hypot(*z));
         return Ok(NamedColumn { name: format!("|{vector}|"), values: owned(lengths.collect()) });
+    }
+    // A word for what the data calls otherwise, such as `element`.
+    if let Some(column) = columns_for(name).iter().find_map(|other| named(other, columns)) {
+        check_count(column, spheres)?;
+        return Ok(NamedColumn { name: column.name.clone(), values: Cow::Borrowed(&column.values) });
     }
     Err(unknown(name, columns))
 }
@@ -217,4 +224,28 @@ fn unknown(name: &str, columns: &[Column]) -> ColumnError {
     let nearest = known.iter().max_by(|a, b| likeness(a).total_cmp(&likeness(b)));
     let nearest = nearest.filter(|nearest| likeness(nearest) > 0.75).cloned();
     ColumnError::Unknown { name: one_line(name), nearest, columns: known.join(", ") }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::load::{self, Options};
+
+    #[test]
+    fn words_of_selections_find_columns() {
+        let pdb = "ATOM      1  CA  ALA A   1       0.000   0.000   0.000  1.00  5.00           C\n";
+        let data = load::from_bytes(pdb.as_bytes(), "a.pdb", &Options::default()).unwrap();
+        for (word, wanted) in [
+            ("element", "species"),
+            ("resname", "residue"),
+            ("resid", "residue_number"),
+            ("bfactor", "b_factor"),
+            ("B", "b_factor"),
+            ("chainID", "chain"),
+            ("residue", "residue"),
+        ] {
+            assert_eq!(column(word, &data.spheres, &data.columns).unwrap().name, wanted, "{word}");
+        }
+        assert!(column("charge", &data.spheres, &data.columns).is_err());
+    }
 }

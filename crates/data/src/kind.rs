@@ -1,11 +1,13 @@
 //! Kinds of data, such as crystals and biomolecules, which are drawn in different ways if nobody says how.
 
+mod axes;
 mod whole;
 
 use glam::{DMat3, DVec3};
 
 use crate::load::{ColumnValues, Dataset, element_symbol, is_metal};
 use crate::select::Selection;
+use whole::{Whole, whole};
 
 /// A kind of data.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -20,7 +22,7 @@ pub enum Kind {
     Crystal,
     /// Few atoms that form molecules.
     Molecules,
-    /// Many atoms that form molecules.
+    /// Many atoms that form molecules, or single atoms.
     Liquid,
     /// Other atoms.
     Atoms,
@@ -115,6 +117,9 @@ pub struct Traits {
     pub has_ligands: bool,
     /// Returns true if more than a tenth of the spheres have a species that is no element, and nothing gives radii.
     pub has_beads: bool,
+    /// The direction towards the eye from which data without a cell looks widest, and the direction that is up then, if it
+    /// does not look alike from all sides.
+    pub widest_view: Option<[DVec3; 2]>,
     /// Two corners of the box in which nearly all centres lie, if some lie so far away that all would be small in a
     /// picture.
     pub bulk: Option<[DVec3; 2]>,
@@ -153,16 +158,14 @@ impl Traits {
             Kind::Coarse
         } else if has_residues && residues_of(data, &polymer) >= 3 {
             Kind::Biomolecule
-        } else if are_atoms && cell.is_some() && gap >= GAP && whole::reaches_itself(data) {
-            Kind::Slab
-        } else if are_atoms && cell.is_some() && count <= CRYSTAL && whole::reaches_itself(data) {
-            Kind::Crystal
-        } else if are_atoms && count <= MOLECULES {
-            Kind::Molecules
-        } else if are_atoms && count <= SEARCHED && !whole::reaches_itself(data) {
-            Kind::Liquid
         } else if are_atoms {
-            Kind::Atoms
+            match if count <= SEARCHED { whole(data) } else { Whole::Solid } {
+                Whole::Solid if cell.is_some() && gap >= GAP => Kind::Slab,
+                Whole::Solid if cell.is_some() && count <= CRYSTAL => Kind::Crystal,
+                Whole::Solid => Kind::Atoms,
+                Whole::Molecules if count <= MOLECULES => Kind::Molecules,
+                Whole::Molecules | Whole::Single => Kind::Liquid,
+            }
         } else if cell.is_some() || species.is_some() {
             Kind::Particles
         } else if count >= STARS && data.colors.is_none() && bulk(data, STARS_WITHIN).is_some() {
@@ -180,6 +183,7 @@ impl Traits {
             has_water: water.contains(&true) && water.contains(&false),
             has_ligands: polymer.iter().zip(&water).any(|(is_polymer, is_water)| !is_polymer && !is_water),
             has_beads,
+            widest_view: if cell.is_some() { None } else { widest_view(data, &water) },
             bulk: if count < FRAMED {
                 None
             } else {
@@ -193,6 +197,12 @@ impl Traits {
 fn matches(expression: &str, data: &Dataset) -> Vec<bool> {
     let selection = expression.parse::<Selection>();
     selection.and_then(|selection| selection.matches(data)).map(|(matches, _)| matches).unwrap_or_default()
+}
+
+/// The view of data, without water, in which it is widest; near one from the front, right and above.
+fn widest_view(data: &Dataset, is_water: &[bool]) -> Option<[DVec3; 2]> {
+    let seen = (0..data.spheres.len()).filter(|index| is_water.get(*index) != Some(&true));
+    axes::widest_view(seen.map(|index| data.center(index)), [DVec3::new(0.47, 0.34, 0.81), DVec3::Y])
 }
 
 /// The number of residues, up to three, of the spheres that are chosen.
@@ -295,6 +305,7 @@ mod tests {
         assert_eq!(kind("a.xyz", &cell(9.0, 5.0, &across)), Kind::Molecules);
         let chain = [("C", [0.0; 3]), ("C", [1.3, 0.0, 0.0]), ("C", [2.6, 0.0, 0.0])];
         assert_eq!(kind("a.xyz", &cell(3.9, 20.0, &chain)), Kind::Slab);
+        assert_eq!(kind("a.xyz", "2\n\nAr 0 0 0\nAr 0 0 4\n"), Kind::Liquid);
     }
 
     #[test]

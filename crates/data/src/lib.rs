@@ -14,6 +14,7 @@ pub mod added;
 mod cell;
 pub mod column;
 pub mod css;
+mod keys;
 pub mod kind;
 pub mod load;
 pub mod replicate;

@@ -22,6 +22,11 @@ fn written(length: f64) -> String {
     format!("{digits:?}")
 }
 
+/// A direction with six digits.
+fn direction(direction: DVec3) -> String {
+    direction.to_array().map(|part| format!("{:?}", (part * 1e6).round() / 1e6 + 0.0)).join(", ")
+}
+
 /// Whether a key gives colours.
 fn is_colored(is_given: &impl Fn(&str) -> bool) -> bool {
     ["color", "color_by", "elements", "show"].iter().any(|key| is_given(key))
@@ -122,19 +127,19 @@ impl KindSettings {
             self.add(&format!("focus = \"{}\"", within.join(" and ")));
             self.notes.push("a few spheres far away are outside of the picture; --focus all frames them, too");
         }
-        let angles = match traits.kind {
-            Kind::Slab => "0,8",
-            Kind::Crystal => "15,10",
+        let (from, up, usual) = match (traits.kind, traits.widest_view) {
+            (Kind::Slab, _) => ("view = \"0,8\"".to_owned(), traits.up, "orthographic"),
+            (Kind::Crystal, _) => ("view = \"15,10\"".to_owned(), traits.up, "orthographic"),
+            (Kind::Molecules | Kind::Biomolecule | Kind::Coarse, Some([eye, up])) => {
+                (format!("direction = [{}]", direction(-eye)), up, "pinhole")
+            }
             _ => return,
         };
-        let DVec3 { x, y, z } = traits.up;
-        // The shortest text that is exact enough.
-        let up = [x, y, z].map(|part| format!("{:?}", (part * 1e6).round() / 1e6 + 0.0)).join(", ");
-        let kind = camera.unwrap_or("orthographic");
+        let (up, kind) = (direction(up), camera.unwrap_or(usual));
         if !["orthographic", "pinhole", "thin-lens"].contains(&kind) {
             return;
         }
-        self.add(&format!("camera.{kind} = {{ view = \"{angles}\", up = [{up}] }}"));
+        self.add(&format!("camera.{kind} = {{ {from}, up = [{up}] }}"));
     }
 }
 
@@ -154,6 +159,7 @@ mod tests {
             has_water: true,
             has_ligands: true,
             has_beads: true,
+            widest_view: Some([DVec3::X, DVec3::Z]),
             bulk: Some([DVec3::splat(-1.0), DVec3::splat(2.5)]),
         }
     }
@@ -173,7 +179,7 @@ mod tests {
 
     #[test]
     fn what_is_given_stays() {
-        let all = ["box", "bonds", "background", "color", "view", "select"];
+        let all = ["box", "replicate", "bonds", "background", "color", "view", "select"];
         for kind in Kind::ALL {
             assert_eq!(KindSettings::new(&traits(kind), None, |key| all.contains(&key)).text, "", "{kind:?}");
         }

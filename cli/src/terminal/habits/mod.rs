@@ -9,23 +9,31 @@ use clap::{Arg, Command, CommandFactory};
 use strsim::normalized_levenshtein;
 
 use self::asked::Asked;
+use self::hints::Hint;
 use crate::command_line::Arguments;
 use crate::terminal::failure::Failure;
 use crate::terminal::text::in_quotes;
 use pinhole_data::css;
 use pinhole_data::load::Format;
+use pinhole_data::show::ShowStyle;
 use pinhole_figure::settings::flags::{Flag, Value};
 
 mod asked;
+mod hints;
 
 /// Other names of flags.
 const SAME: &[(&str, &str)] = &[
     ("bg", "background"),
     ("colorbar", "legend"),
+    ("center", "focus"),
+    ("centre", "focus"),
     ("colour", "color"),
+    ("colour-by", "color-by"),
     ("only", "select"),
     ("out", "output"),
+    ("resolution", "size"),
     ("scale", "radius-scale"),
+    ("supercell", "replicate"),
 ];
 
 /// Flags that are short for a value of another one.
@@ -137,6 +145,7 @@ impl Reader<'_> {
         }
         self.give_back_file();
         self.name_topology();
+        self.refuse_more_files()?;
         let asked = std::mem::take(&mut self.asked);
         for (name, value) in asked.flags(|name| self.taken(name))? {
             self.give(name, &value);
@@ -176,8 +185,17 @@ impl Reader<'_> {
             return Ok(());
         }
         let Some((_, of)) = SHORT.iter().find(|(short, of)| *short == name && self.find(of).is_some()) else {
-            self.plain.push(format!("--{text}").into());
-            return Ok(());
+            return match hints::of(name, self.find("show").is_some()) {
+                Hint::Flag(flag, value) => {
+                    self.give(flag, &value);
+                    Ok(())
+                }
+                Hint::Say(words) => Err(Failure::usage(format!("--{name}: {words}"))),
+                Hint::None => {
+                    self.plain.push(format!("--{text}").into());
+                    Ok(())
+                }
+            };
         };
         if name == "ortho" {
             self.give(of, "orthographic");
@@ -234,7 +252,17 @@ impl Reader<'_> {
         let is_color =
             || css::color(&text).is_ok() || COLORS.iter().any(|color| normalized_levenshtein(color, &text) > 0.7);
         let is_column = name == "color" && self.find("color-by").is_some() && !is_color();
-        self.give(if is_column { "color-by" } else { name }, &text);
+        let name = match name {
+            "color" if is_column => "color-by",
+            // A style of other programs is one of what is drawn.
+            "style" if ShowStyle::of_name(&text).is_some() && self.find("show").is_some() => "show",
+            name => name,
+        };
+        if name == "background" && text == "transparent" && self.find("transparent").is_some() {
+            self.plain.push("--transparent".into());
+            return Ok(());
+        }
+        self.give(name, &text);
         Ok(())
     }
 
@@ -248,6 +276,7 @@ impl Reader<'_> {
         let most = match flag.value {
             Value::Numbers(count) => count,
             _ if ["range", "size", "view"].contains(&name) => 2,
+            _ if name == "replicate" => 3,
             _ => 1,
         };
         let is_number = |text: &str| text.trim_end_matches('%').parse::<f64>().is_ok();
@@ -320,6 +349,20 @@ impl Reader<'_> {
         }
     }
 
+    /// Refuses a second file, which clap would call an unexpected argument.
+    fn refuse_more_files(&self) -> Result<(), Failure> {
+        let most = self.command.get_positionals().count();
+        let files = self.files.iter().filter_map(|place| self.plain.get(*place));
+        let is_topology = |word: &&OsString| word.to_string_lossy().starts_with("--topology");
+        match files.filter(|word| !is_topology(word)).nth(most) {
+            Some(word) if most == 1 && Path::new(word).is_file() => Err(Failure::usage(format!(
+                "{}: one file is rendered at a time; join frames to one file first, or render each file",
+                word.to_string_lossy()
+            ))),
+            _ => Ok(()),
+        }
+    }
+
     /// The value of a flag that was given before, which is taken away.
     fn taken(&mut self, name: &str) -> Option<String> {
         let start = format!("--{name}=");
@@ -329,97 +372,4 @@ impl Reader<'_> {
 }
 
 #[cfg(test)]
-mod tests {
-    use super::*;
-
-    /// The only file that exists here is `Cargo.toml`.
-    fn plain(line: &str) -> Result<String, String> {
-        let words = ["pinhole"].into_iter().chain(line.split(' ')).map(|word| word.replace('_', " ").into());
-        let words = plain_words(words.collect()).map_err(|failure| failure.message())?;
-        let words: Vec<String> = words[1..].iter().map(|word| word.to_string_lossy().replace(' ', "_")).collect();
-        Ok(words.join(" "))
-    }
-
-    #[test]
-    fn values_follow_a_blank() {
-        for (line, expected) in [
-            ("render a.xyz --bonds 1.2 --legend top-right", "render a.xyz --bonds=1.2 --legend=top-right"),
-            ("render --box 0.5 --ao 8 a.xyz --scale-bar 20_Å", "render --box=0.5 --ao=8 a.xyz --scale-bar=20_Å"),
-            ("render --box Cargo.toml -o b.png", "render --box Cargo.toml -o b.png"),
-            ("render --box gone.pdb -o b.png", "render --box gone.pdb -o b.png"),
-            ("render --bonds 1.1 --scale-bar nm", "render --bonds=1.1 --scale-bar nm"),
-            ("render --scale-bar gone.pdb --bonds 1.1", "render --scale-bar=gone.pdb --bonds 1.1"),
-            ("render a.xyz --bonds --legend -o b.png", "render a.xyz --bonds --legend -o b.png"),
-            ("render a.xyz --range 0 50 --frame -1", "render a.xyz --range=0,50 --frame=-1"),
-            ("render --range 2% 98% a.xyz --eye 0 -1 8", "render --range=2%,98% a.xyz --eye=0,-1,8"),
-            ("render --size 800 600 --view 30 20 7", "render --size=800,600 --view=30,20 7"),
-            ("render a.xyz --no-denoise --no-legend", "render a.xyz --denoise=false --no-legend"),
-            ("a.xyz --no-box", "render a.xyz --box=false"),
-            ("render a.xyz --cmap --log", "render a.xyz --cmap --log"),
-            ("render a.xyz -- --bonds 1", "render a.xyz -- --bonds 1"),
-            ("info Cargo.toml --bonds 1", "info Cargo.toml --bonds 1"),
-            ("job split a.xyz --bonds 1", "job split a.xyz --bonds=1"),
-        ] {
-            assert_eq!(plain(line).as_deref(), Ok(expected), "{line}");
-        }
-    }
-
-    #[test]
-    fn a_file_alone_is_rendered() {
-        for (line, expected) in [
-            ("Cargo.toml --style fast", "render Cargo.toml --style=fast"),
-            ("gone.pdb", "render gone.pdb"),
-            ("--ortho a.pdb", "render --camera=orthographic a.pdb"),
-            ("-o b.png a.pdb", "render -o b.png a.pdb"),
-            ("--help", "--help"),
-            ("-V", "-V"),
-            ("rendr", "rendr"),
-            ("job", "job"),
-            ("job a.pdb", "job a.pdb"),
-        ] {
-            assert_eq!(plain(line).as_deref(), Ok(expected), "{line}");
-        }
-    }
-
-    #[test]
-    fn other_names_have_the_meaning_of_flags() {
-        for (line, expected) in [
-            ("a.xyz --out b.png --bg black --colorbar top", "a.xyz --output=b.png --background=black --legend=top"),
-            ("a.xyz --colour red --title me@home", "a.xyz --color=red --label=me@home@top"),
-            ("a.xyz --color chain", "a.xyz --color-by=chain"),
-            ("a.xyz --color gren", "a.xyz --color=gren"),
-            ("a.xyz --only protein --exclude element_H", "a.xyz --select=(protein)_and_not_(element_H)"),
-            ("a.xyz --slice z=3:9 --slice x=:2", "a.xyz --select=3_<=_z_<=_9_and_x_<=_2"),
-            ("a.xyz --vmin 2", "a.xyz --range=2,"),
-            ("a.xyz --vmax 5 --vmin -1", "a.xyz --range=-1,5"),
-            ("a.xyz --every 5", "a.xyz --frames=::5"),
-            ("a.xyz --every 5 --frames 10:90", "a.xyz --frames=10:90:5"),
-            ("a.xyz --width 900", "a.xyz --size=900"),
-            ("a.xyz --height 600", "a.xyz --size=800x600"),
-            ("a.gro --zoom 2 a.xtc", "--topology=a.gro --zoom=2 a.xtc"),
-            ("a.dcd a.pdb", "a.dcd --topology=a.pdb"),
-            ("a.xyz --height 60 --width 50", "a.xyz --size=50x60"),
-        ] {
-            assert_eq!(plain(&format!("render {line}")), Ok(format!("render {expected}")), "{line}");
-        }
-        assert_eq!(plain("info a.xyz --width 9").as_deref(), Ok("info a.xyz --width 9"));
-    }
-
-    #[test]
-    fn words_without_a_meaning_are_refused() {
-        for (line, words) in [
-            ("--select resname HEM", "`HEM` is no file; quote it: --select 'resname HEM'"),
-            ("--show protein = trace", "`=` is no file; quote it: --show 'protein = trace'"),
-            ("--exclude name CA or water -o b.png", "`CA` is no file; quote it: --exclude 'name CA or water'"),
-            ("--clip x<5", "--clip: spheres are not cut; --select 'x < 5' keeps a part"),
-            ("--slice z", "--slice z: write AXIS=LOW:HIGH, such as z=3:9, which keeps whole spheres"),
-            ("--height x", "--height x: write a whole number"),
-            ("--every", "--every needs a value"),
-        ] {
-            assert_eq!(plain(&format!("render Cargo.toml {line}")), Err(words.to_owned()), "{line}");
-        }
-        let words = plain("render --only resname HEM Cargo.toml").unwrap_err();
-        assert!(words.starts_with("`HEM` is no file"), "{words}");
-        assert_eq!(plain("render --select protein gone.pdb").as_deref(), Ok("render --select=protein gone.pdb"));
-    }
-}
+mod tests;

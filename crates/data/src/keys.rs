@@ -1,0 +1,58 @@
+//! The words for values of atoms and other spheres, and the columns that may hold them. Programs name them differently.
+
+/// A key: its name, its aliases, and the columns that can hold it, the first first.
+#[derive(Debug)]
+pub(crate) struct Key {
+    pub(crate) name: &'static str,
+    pub(crate) aliases: &'static [&'static str],
+    pub(crate) columns: &'static [&'static str],
+}
+
+const fn key(name: &'static str, aliases: &'static [&'static str], columns: &'static [&'static str]) -> Key {
+    Key { name, aliases, columns }
+}
+
+pub(crate) const KEYS: &[Key] = &[
+    key("element", &["elem", "species", "symbol", "e."], &["element", "species"]),
+    key("name", &["atom", "atomname", "n."], &["name", "atom_name", "type", "species", "element"]),
+    key("type", &["particletype", "atomtype"], &["type", "species", "element"]),
+    key("resname", &["resn", "residue_name", "r."], &["resname", "residue_name", "resn", "residue"]),
+    key(
+        "resid",
+        &["resi", "resseq", "resnum", "residue_number", "i."],
+        &["resid", "residue_number", "resi", "resseq", "resnum"],
+    ),
+    key("icode", &["insertion_code"], &["icode"]),
+    key("residue", &[], &[]),
+    key("resindex", &[], &[]),
+    key("chain", &["chainid", "c."], &["chain", "chain_id", "chainid"]),
+    key("segid", &["segname", "segment", "segi", "s."], &["segid", "segname", "segi"]),
+    key("index", &[], &["index"]),
+    key("bynum", &[], &[]),
+    key("serial", &["id", "particleidentifier"], &["serial", "id"]),
+    key("altloc", &["alt"], &["altloc"]),
+    key("b_factor", &["b", "bfactor", "beta"], &["b_factor", "bfactor", "beta"]),
+    key("occupancy", &["q"], &["occupancy"]),
+    key("charge", &["pc."], &["charge", "charges", "q"]),
+    key("formal_charge", &["fc."], &["formal_charge"]),
+    key("mass", &["masses"], &["mass", "masses"]),
+    key("radius", &[], &["radius"]),
+    key("record", &["record_type"], &["record"]),
+    key("model", &[], &["model"]),
+    key("file", &[], &["file"]),
+    key("mol", &["molecule", "moleculeidentifier"], &["mol", "molecule"]),
+    key("fragment", &["frag"], &[]),
+    key("numbonds", &["coordination"], &["numbonds"]),
+    key("x", &["position.x"], &["x"]),
+    key("y", &["position.y"], &["y"]),
+    key("z", &["position.z"], &["z"]),
+];
+
+/// The columns that may hold what a name means, the first first; none if the name is no word for such a value.
+pub(crate) fn columns_for(name: &str) -> &'static [&'static str] {
+    let is = |key: &&Key| {
+        let aliases = key.aliases.iter().filter(|alias| !alias.ends_with('.'));
+        std::iter::once(&key.name).chain(aliases).any(|word| word.eq_ignore_ascii_case(name))
+    };
+    KEYS.iter().find(is).map_or(&[], |key| key.columns)
+}
