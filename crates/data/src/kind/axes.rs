@@ -12,14 +12,14 @@ const SWEEPS: usize = 16;
 /// the direction of middle spread, so that they are longest from side to side. `None` if they spread in all directions
 /// alike. Of two opposite directions it is the one nearer to `near`, for the eye and for up.
 pub(super) fn widest_view(points: impl Iterator<Item = DVec3> + Clone, near: [DVec3; 2]) -> Option<[DVec3; 2]> {
-    let finite = || points.clone().filter(|point| point.is_finite());
-    let count = finite().count();
+    let finite = points.filter(|point| point.is_finite());
+    let count = finite.clone().count();
     if count < 2 {
         return None;
     }
-    let mean = finite().sum::<DVec3>() / count as f64;
+    let mean = finite.clone().sum::<DVec3>() / count as f64;
     let square = |a: DVec3| DMat3::from_cols(a * a.x, a * a.y, a * a.z);
-    let spread = finite().map(|point| square(point - mean)).fold(DMat3::ZERO, |sum, part| sum + part);
+    let spread = finite.map(|point| square(point - mean)).fold(DMat3::ZERO, |sum, part| sum + part);
     let [(least, shortest), (middle, second), (most, longest)] = eigenvectors(spread)?;
     let towards = |axis: DVec3, near: DVec3| if axis.dot(near) < 0.0 { -axis } else { axis };
     if least < DIFFERENT * middle {
