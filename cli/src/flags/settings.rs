@@ -74,7 +74,7 @@ impl Given {
         given.find(|flag| flag.group as u32 & groups != 0).map(|flag| flag.flag)
     }
 
-    /// Whether a flag gives a key, a key within its table, or a key of a camera with this name.
+    /// Returns true if a flag gives a key, a key within its table, or a key of a camera with this name.
     pub(crate) fn has_key(&self, key: &str) -> bool {
         let is = |flag: &Flag| {
             let (first, last) = (flag.key.split('.').next(), flag.key.strip_prefix("camera.*."));

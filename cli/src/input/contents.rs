@@ -40,7 +40,7 @@ pub(crate) struct Details {
     pub(crate) color_key: Option<ColorKey>,
     /// The meaning of arrows, if there are any.
     pub(crate) arrow_key: Option<ArrowKey>,
-    /// What was chosen for the data, because no flag said it.
+    /// The choices for the data that no flag made.
     pub(crate) chosen: Option<Chosen>,
     /// The color of spheres without one, if a key or a flag gives it.
     pub(crate) color: Option<LinearRgb>,

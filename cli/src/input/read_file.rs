@@ -15,7 +15,7 @@ pub(crate) fn is_standard_input(path: &Path) -> bool {
     path == Path::new("-")
 }
 
-/// Whether a file starts as one that is compressed.
+/// Returns true if a file starts as one that is compressed.
 pub(crate) fn is_compressed(path: &Path) -> bool {
     let mut start = Vec::new();
     let read = load::open_regular(path).and_then(|file| file.take(16).read_to_end(&mut start));

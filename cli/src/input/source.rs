@@ -38,7 +38,7 @@ pub(crate) struct Source {
     pub(crate) frame: Option<usize>,
     /// The colour keys shared by all frames of a movie.
     pub(crate) joined: JoinedKeys,
-    /// What was chosen for all frames of a movie.
+    /// The choices for all frames of a movie.
     pub(crate) chosen: Option<Chosen>,
     /// The open file, if several of its frames are read.
     pub(crate) frames: Option<Arc<OpenFrames>>,

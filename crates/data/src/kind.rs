@@ -95,7 +95,7 @@ const FRAMED: usize = 1_000;
 const WITHIN: [f64; 2] = [0.005, 0.995];
 const STARS_WITHIN: [f64; 2] = [0.05, 0.95];
 
-/// What is known of data, by which its kind is chosen.
+/// Facts about data, by which its kind is chosen.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Traits {
     /// The kind.

@@ -27,7 +27,7 @@ fn direction(direction: DVec3) -> String {
     direction.to_array().map(|part| format!("{:?}", (part * 1e6).round() / 1e6 + 0.0)).join(", ")
 }
 
-/// Whether a key gives colours.
+/// Returns true if a key gives colours.
 fn is_colored(is_given: &impl Fn(&str) -> bool) -> bool {
     ["color", "color_by", "elements", "show"].iter().any(|key| is_given(key))
 }

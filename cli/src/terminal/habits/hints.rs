@@ -11,7 +11,7 @@ pub(super) enum Hint {
     None,
 }
 
-/// What to type in the place of flags.
+/// Flags of other programs, and words that say what to type.
 const SAID: &[(&[&str], &str)] = &[
     (
         &["rotate", "azimuth", "elevation", "rot"],
@@ -28,7 +28,7 @@ const SAID: &[(&[&str], &str)] = &[
     (&["color-scheme", "coloring"], "--color-by COLUMN colors by a column, such as chain or element"),
 ];
 
-/// What a flag means. `has_show` is true where `--show` can be given.
+/// Returns the meaning of a flag. `has_show` is true where `--show` can be given.
 pub(super) fn of(name: &str, has_show: bool) -> Hint {
     if let Some((_, words)) = SAID.iter().find(|(names, _)| names.contains(&name)) {
         return Hint::Say(words);

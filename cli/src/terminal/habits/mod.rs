@@ -98,7 +98,7 @@ pub(crate) fn plain_words(words: Vec<OsString>) -> Result<Vec<OsString>, Failure
     Reader { command, rest, plain, files: Vec::new(), doubtful: Vec::new(), asked: Asked::default() }.read()
 }
 
-/// Whether a word that is not the name of a command may be a file or a flag for this command.
+/// Returns true if a word that is not the name of a command may be a file or a flag for this command.
 fn is_for(command: &Command, word: &OsStr) -> bool {
     let text = word.to_string_lossy();
     match text.strip_prefix('-') {
@@ -328,7 +328,7 @@ impl Reader<'_> {
         }
     }
 
-    /// Of two files, the one beside a trajectory of positions alone is its topology.
+    /// Takes the file beside a trajectory of positions alone as its topology.
     fn name_topology(&mut self) {
         let &[first, second] = &self.files[..] else { return };
         let has_topology = |word: &OsString| word.to_str().is_some_and(|word| word.starts_with("--topology"));

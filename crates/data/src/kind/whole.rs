@@ -8,7 +8,7 @@ use crate::load::{Dataset, covalent};
 /// Atoms are joined up to this part of the sum of their covalent radii, also two metals.
 const JOINED: f64 = 1.2;
 
-/// What atoms form.
+/// The forms of matter that atoms make up.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) enum Whole {
     /// Atoms that are not joined.

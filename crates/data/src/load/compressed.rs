@@ -41,7 +41,7 @@ impl Compression {
     }
 }
 
-/// Whether the first bytes of a file are those of one that is compressed and can be read: 10 bytes suffice.
+/// Returns true if the first bytes of a file are those of one that is compressed and can be read: 10 bytes suffice.
 #[must_use]
 pub fn is_compressed(bytes: &[u8]) -> bool {
     Compression::of(bytes).is_some()
