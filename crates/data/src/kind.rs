@@ -76,6 +76,9 @@ impl Kind {
 /// The least width of the empty layer of a slab, in Å.
 const GAP: f64 = 6.0;
 
+/// The number of slices of a cell among which empty ones are searched.
+const SLICES: usize = 1 << 13;
+
 /// Distances between neighbouring atoms, in Å, and those between beads.
 const ATOMS: std::ops::Range<f64> = 0.6..5.5;
 const BEADS: f64 = 2.0;
@@ -90,8 +93,10 @@ const SEARCHED: usize = 200_000;
 /// The fewest points that may be stars.
 const STARS: usize = 20_000;
 
-/// The fewest spheres of which a few may lie outside the picture, and the parts of all between which the others lie.
+/// The fewest spheres of which a few may lie outside the picture, the most that are looked at for that, and the parts of all
+/// between which the others lie.
 const FRAMED: usize = 1_000;
+const SAMPLE: usize = 1 << 17;
 const WITHIN: [f64; 2] = [0.005, 0.995];
 const STARS_WITHIN: [f64; 2] = [0.05, 0.95];
 
@@ -232,15 +237,16 @@ fn widest_gap(data: &Dataset, cell: &DMat3) -> (f64, DVec3) {
     let rows = cell.inverse().transpose();
     let mut widest = (0.0, DVec3::Z);
     for (axis, row) in [rows.x_axis, rows.y_axis, rows.z_axis].into_iter().enumerate() {
-        let mut places: Vec<f64> = (0..data.spheres.len())
-            .map(|index| row.dot(data.center(index)))
-            .filter(|place| place.is_finite())
-            .map(|place| place - place.floor())
-            .collect();
-        places.sort_unstable_by(f64::total_cmp);
-        let (Some(first), Some(last)) = (places.first(), places.last()) else { continue };
-        let across = 1.0 + first - last;
-        let gap = places.windows(2).map(|pair| pair[1] - pair[0]).fold(across, f64::max) / row.length();
+        let mut is_filled = vec![false; SLICES];
+        for place in (0..data.spheres.len()).map(|index| row.dot(data.center(index))).filter(|place| place.is_finite())
+        {
+            is_filled[(((place - place.floor()) * SLICES as f64) as usize).min(SLICES - 1)] = true;
+        }
+        let filled: Vec<usize> = (0..SLICES).filter(|slice| is_filled[*slice]).collect();
+        let (Some(first), Some(last)) = (filled.first(), filled.last()) else { continue };
+        let across = SLICES + first - last;
+        let empty = filled.windows(2).map(|pair| pair[1] - pair[0]).fold(across, usize::max);
+        let gap = (empty - 1) as f64 / SLICES as f64 / row.length();
         if gap > widest.0 {
             widest = (gap, cell.col(axis).dot(row).signum() * row / row.length());
         }
@@ -251,20 +257,25 @@ fn widest_gap(data: &Dataset, cell: &DMat3) -> (f64, DVec3) {
 /// The box between two parts of the centres, in their order along each axis, and a little around it; `None` if that of all
 /// centres is less than twice as long.
 fn bulk(data: &Dataset, [first, last]: [f64; 2]) -> Option<[DVec3; 2]> {
-    let mut corners = [[DVec3::ZERO; 2]; 2];
-    for axis in 0..3 {
-        let places = (0..data.spheres.len()).map(|index| data.center(index)[axis]);
-        let mut all: Vec<f64> = places.filter(|place| place.is_finite()).collect();
-        all.sort_unstable_by(f64::total_cmp);
-        let most = all.len().checked_sub(1)?;
-        let at = |part: f64| all.get((most as f64 * part) as usize).copied();
-        for (corner, part) in corners.iter_mut().flatten().zip([0.0, 1.0, first, last]) {
-            corner[axis] = at(part)?;
-        }
-    }
-    let [whole, [low, high]] = corners;
+    let count = data.spheres.len();
+    let side = |axis: usize| -> Option<[f64; 4]> {
+        let place = |index: usize| data.center(index)[axis];
+        let finite = (0..count).map(place).filter(|place| place.is_finite());
+        let ends = [f64::INFINITY, f64::NEG_INFINITY];
+        let [low, high] = finite.fold(ends, |[low, high], place| [low.min(place), high.max(place)]);
+        // A sample of large data is enough for parts of all.
+        let step = count.div_ceil(SAMPLE).max(1);
+        let mut some: Vec<f64> = (0..count).step_by(step).map(place).filter(|place| place.is_finite()).collect();
+        some.sort_unstable_by(f64::total_cmp);
+        let most = some.len().checked_sub(1)?;
+        let at = |part: f64| some.get((most as f64 * part) as usize).copied();
+        Some([low, high, at(first)?, at(last)?])
+    };
+    let sides = [side(0)?, side(1)?, side(2)?];
+    let corner = |which: usize| DVec3::from(sides.map(|side| side[which]));
+    let (whole, low, high) = (corner(1) - corner(0), corner(2), corner(3));
     let around = DVec3::splat(0.05 * (high - low).max_element());
-    ((whole[1] - whole[0]).max_element() > 2.0 * (high - low).max_element()).then_some([low - around, high + around])
+    (whole.max_element() > 2.0 * (high - low).max_element()).then_some([low - around, high + around])
 }
 
 #[cfg(test)]
