@@ -28,6 +28,16 @@ impl Chosen {
     /// The choices for data that was read with these flags, of which `select` keeps a part. In a movie spheres may move anywhere, so that all of them are
     /// framed.
     pub(crate) fn of(data: &Dataset, select: Option<&Selection>, given: &Given, is_movie: bool) -> Self {
+        let named = given.get("kind").and_then(Kind::of_name);
+        if named == Some(Kind::Plain) {
+            // Nothing follows, so large data need not be looked at.
+            return Self {
+                layer: Layer { flag: KIND, text: String::new() },
+                colors: None,
+                name: None,
+                notes: Vec::new(),
+            };
+        }
         let mut traits = match select {
             None => Traits::of(data),
             Some(select) => {
@@ -38,7 +48,7 @@ impl Chosen {
             }
         };
         traits.bulk = traits.bulk.filter(|_| !is_movie);
-        traits.kind = given.get("kind").and_then(Kind::of_name).unwrap_or(traits.kind);
+        traits.kind = named.unwrap_or(traits.kind);
         let has_camera = given.get("camera").is_some() || given.has_key("camera");
         let camera = has_camera.then(|| given.get("camera").unwrap_or("pinhole"));
         let settings = match traits.kind {
