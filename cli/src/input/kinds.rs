@@ -25,8 +25,8 @@ pub(crate) struct Chosen {
 }
 
 impl Chosen {
-    /// The choices for data that was read with these flags, of which `select` keeps a part. In a movie spheres may move anywhere, so that all of them are
-    /// framed.
+    /// The choices for data that was read with these flags, of which `select` keeps a part. In a movie spheres may move
+    /// anywhere, so that all of them are framed.
     pub(crate) fn of(data: &Dataset, select: Option<&Selection>, given: &Given, is_movie: bool) -> Self {
         let named = given.get("kind").and_then(Kind::of_name);
         if named == Some(Kind::Plain) {
