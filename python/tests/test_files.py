@@ -52,7 +52,7 @@ def test_a_trajectory_is_a_sequence(tmp_path):
 @pytest.mark.filterwarnings("ignore::pinhole.Note")
 def test_the_program_sees_the_same_file(program, tmp_path):
     (tmp_path / "t.extxyz").write_text(frames(3))
-    wanted = program("t.extxyz", "--frame", "1", "--bonds", "--box", "--size", "80x60")
+    wanted = program("t.extxyz", "--kind", "plain", "--frame", "1", "--bonds", "--box", "--size", "80x60")
     spheres = ph.read(tmp_path / "t.extxyz", frame=1, bonds=True, box=True)
     assert spheres.render((80, 60))._repr_png_() == wanted
 
