@@ -216,7 +216,7 @@ pub(crate) struct DataReport {
     pub(crate) format: &'static str,
     #[serde(skip)]
     pub(crate) about: &'static str,
-    /// Whether the file is compressed; `None` on standard input.
+    /// Is true if the file is compressed; `None` on standard input.
     pub(crate) compressed: Option<bool>,
     /// Number of frames; `None` if the format has no frames, or the number is not known.
     pub(crate) frames: Option<usize>,

@@ -6,8 +6,8 @@ use std::time::Instant;
 use crate::flags::common::Stereo;
 use crate::flags::render::RenderArgs;
 use crate::frames;
+use crate::input::Input;
 use crate::input::read_file::is_standard_input;
-use crate::input::{Input, extension};
 use crate::output::picture::Outputs;
 use crate::output::scene;
 use crate::proof::{certified, render_certified};
@@ -20,6 +20,7 @@ use crate::terminal::profile;
 use crate::terminal::progress::{self, answer, tell};
 use crate::terminal::threads;
 use pinhole::image::LayerSet;
+use pinhole_data::load::without_ending;
 
 /// Renders into the file that the flags name, or else into one with the name of the input.
 pub(crate) fn run_named(mut args: RenderArgs) -> Result<(), Failure> {
@@ -42,11 +43,9 @@ fn default_output(args: &RenderArgs) -> Result<PathBuf, Failure> {
     if args.frames.asks_for_several() || args.frames.of_writing().is_some() || args.stereo == Some(Stereo::TwoFiles) {
         return Err(no_name("several pictures need a name; add -o f%04d.png, or -o movie.mp4"));
     }
-    let name = input.file_stem().filter(|_| !is_standard_input(input));
-    let name = name.ok_or_else(|| no_name("the picture needs a name; add -o OUT.png"))?;
-    let is_compressed = extension(input).as_deref() == Some("gz");
-    let stem = Path::new(name).file_stem().filter(|_| is_compressed).unwrap_or(name);
-    let mut path = stem.to_os_string();
+    let plain = without_ending(input);
+    let name = plain.file_stem().filter(|_| !is_standard_input(input));
+    let mut path = name.ok_or_else(|| no_name("the picture needs a name; add -o OUT.png"))?.to_os_string();
     path.push(".png");
     let path = PathBuf::from(path);
     if path.exists() && input.exists() {

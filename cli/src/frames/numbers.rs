@@ -154,8 +154,7 @@ impl Overview {
             contents.details.arrow_key.iter().for_each(|key| overview.colors.add_arrows(key));
             // Colours by kinds of spheres may begin in a later frame.
             if let Some(chosen) = &contents.details.chosen
-                && (overview.chosen.is_none() || chosen.colors.is_some())
-                && overview.chosen.as_ref().is_none_or(|first| first.colors.is_none())
+                && overview.chosen.as_ref().is_none_or(|first| first.colors.is_none() && chosen.colors.is_some())
             {
                 (overview.chosen, overview.kinds_from) = (Some(chosen.clone()), Some(number));
                 source.chosen = overview.chosen.clone();

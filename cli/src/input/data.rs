@@ -63,7 +63,7 @@ impl DataOptions {
     }
 }
 
-/// Whether the radii of a format are those of atoms, and not written in the file.
+/// Returns true if the radii of a format are those of atoms, and not written in the file.
 fn is_of_atoms(format: &Format) -> bool {
     !format.may_lack_radii && (format.has_colors || format.needs_topology)
 }

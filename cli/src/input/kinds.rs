@@ -1,4 +1,4 @@
-//! What the program chooses for a data file, because of the kind of data.
+//! The choices of the program for a data file, which follow from the kind of data.
 
 use crate::flags::settings::Given;
 use pinhole_data::kind::{Kind, Traits};

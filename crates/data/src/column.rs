@@ -2,7 +2,7 @@
 
 use std::borrow::Cow;
 
-use crate::keys::columns_for;
+use crate::keys::key_of;
 use crate::load::{Column, ColumnValues};
 use pinhole::internals::text::one_line;
 use pinhole::scene::sphere_array::SphereArray;
@@ -86,8 +86,9 @@ pub fn column<'a>(name: &str, spheres: &SphereArray, columns: &'a [Column]) -> R
         let lengths = x.iter().zip(y).zip(z).map(|((x, y), z)| x.hypot(*y).hypot(*z));
         return Ok(NamedColumn { name: format!("|{vector}|"), values: owned(lengths.collect()) });
     }
-    // A word for what the data calls otherwise, such as `element`.
-    if let Some(column) = columns_for(name).iter().find_map(|other| named(other, columns)) {
+    // A word for what the data calls otherwise, such as `element`. Words with a dot are only those of selections.
+    let key = key_of(name).filter(|_| !name.ends_with('.'));
+    if let Some(column) = key.and_then(|key| key.columns.iter().find_map(|other| named(other, columns))) {
         check_count(column, spheres)?;
         return Ok(NamedColumn { name: column.name.clone(), values: Cow::Borrowed(&column.values) });
     }

@@ -48,11 +48,8 @@ pub(crate) const KEYS: &[Key] = &[
     key("z", &["position.z"], &["z"]),
 ];
 
-/// The columns that may hold what a name means, the first first; none if the name is no word for such a value.
-pub(crate) fn columns_for(name: &str) -> &'static [&'static str] {
-    let is = |key: &&Key| {
-        let aliases = key.aliases.iter().filter(|alias| !alias.ends_with('.'));
-        std::iter::once(&key.name).chain(aliases).any(|word| word.eq_ignore_ascii_case(name))
-    };
-    KEYS.iter().find(is).map_or(&[], |key| key.columns)
+/// The key that a word names, in upper or lower case.
+pub(crate) fn key_of(word: &str) -> Option<&'static Key> {
+    let is = |name: &&str| name.eq_ignore_ascii_case(word);
+    KEYS.iter().find(|key| is(&key.name) || key.aliases.iter().any(&is))
 }

@@ -5,6 +5,7 @@ mod whole;
 
 use glam::{DMat3, DVec3};
 
+use crate::cell::PeriodicCell;
 use crate::load::{ColumnValues, Dataset, element_symbol, is_metal};
 use crate::select::Selection;
 use whole::{Whole, whole};
@@ -145,8 +146,7 @@ impl Traits {
         let has_residues = count > 0 && 2 * residues >= count;
         let polymer = if has_residues { matches("polymer", data) } else { Vec::new() };
         let water = if has_residues { matches("water", data) } else { Vec::new() };
-        let edges = data.cell.filter(|_| !data.is_part_of_crystal && data.is_periodic.contains(&true));
-        let cell = edges.map(|edges| DMat3::from_cols_array_2d(&edges)).filter(|cell| cell.determinant().is_normal());
+        let cell = PeriodicCell::of(data).filter(|_| !data.is_part_of_crystal).map(|cell| cell.edges);
         let (gap, gap_up) = cell.map_or((0.0, DVec3::Z), |cell| widest_gap(data, &cell));
         let third = cell.and_then(|cell| cell.z_axis.try_normalize()).unwrap_or(DVec3::Z);
         let with_species = |is: fn(Option<&'static str>) -> bool| {

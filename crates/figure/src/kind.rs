@@ -1,4 +1,4 @@
-//! What is drawn of a kind of data, and from where, if nobody says so.
+//! Settings for each kind of data: shapes, colours and a view, if nobody says so.
 
 use pinhole::glam::DVec3;
 use pinhole_data::kind::{Kind, Traits};

@@ -1,4 +1,4 @@
-//! What atoms form: molecules, or a solid in which they are joined to their own images.
+//! The forms of matter that atoms make up: molecules, or a solid in which they are joined to their own images.
 
 use glam::{DMat3, DVec3, I64Vec3};
 

@@ -48,7 +48,8 @@ pub fn is_compressed(bytes: &[u8]) -> bool {
 }
 
 /// The path without an ending such as `.gz`, which says nothing about the compressed data.
-pub(super) fn without_ending(path: &Path) -> PathBuf {
+#[must_use]
+pub fn without_ending(path: &Path) -> PathBuf {
     let ending = path.extension().and_then(OsStr::to_str).unwrap_or_default().to_ascii_lowercase();
     match ["gz", "xz", "bz2", "zst"].contains(&ending.as_str()) {
         true => path.with_extension(""),

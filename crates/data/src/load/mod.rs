@@ -35,7 +35,7 @@ mod table;
 mod topology;
 
 pub(crate) use atoms::element::Residue;
-pub use compressed::is_compressed;
+pub use compressed::{is_compressed, without_ending};
 pub use cone_kind::ConeKind;
 pub use cones::ConeSet;
 pub use dataset::{Column, ColumnValues, Dataset, Labels};

@@ -4,7 +4,8 @@ use super::error::{SelectError, error_at};
 use super::parse::Parser;
 use super::scan::number;
 use super::tree::{Expression, Node, Operator, Side, Step, Value, ValueKind, Word};
-use super::words::{Arguments, function, is_joint, is_reserved, key_of};
+use super::words::{Arguments, function, is_joint, is_reserved};
+use crate::keys::key_of;
 use pinhole::internals::text::shortened;
 
 /// Keys whose values are texts, so that `*` after them is a value and not a product.

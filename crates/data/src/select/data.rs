@@ -10,10 +10,10 @@ use super::error::{SelectError, error_at};
 use super::graph::Graph;
 use super::named::NamedSelections;
 use super::tree::Word;
-use super::words::{all_words, key_of, nearest};
+use super::words::{all_words, nearest};
 use crate::added::bonded_pairs;
 use crate::column::{ColumnError, NamedColumn, column};
-use crate::keys::Key;
+use crate::keys::{Key, key_of};
 use crate::load::{ColumnValues, Dataset, Labels};
 use pinhole::internals::text::{listed, one_line, shortened};
 

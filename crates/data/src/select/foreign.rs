@@ -9,7 +9,7 @@ pub(super) fn remedy(text: &str) -> Option<String> {
         let sign_end = rest.find(|c: char| !"<>=!".contains(c)).filter(|end| *end > 0)?;
         let (sign, value) = rest.split_at(sign_end);
         let value = value.split_whitespace().next()?;
-        let name = super::words::key_of(name).map_or(name, |key| key.name);
+        let name = crate::keys::key_of(name).map_or(name, |key| key.name);
         return Some(format!("this is ChimeraX's; write: {name} {sign} {value}"));
     }
     let is_chimera = text.starts_with(['/', '#', '@'])

@@ -4,7 +4,8 @@ use super::error::{SelectError, error_at};
 use super::foreign;
 use super::scan::Scanner;
 use super::tree::{Bonded, Near, Node, Place, Step, Word};
-use super::words::{class_of, is_joint, key_of};
+use super::words::{class_of, is_joint};
+use crate::keys::key_of;
 use pinhole::internals::text::{one_line, shortened};
 
 /// The deepest nesting, so that the stack suffices.

@@ -95,7 +95,7 @@ impl<'a> Scanner<'a> {
         if rest[..end].starts_with(|c: char| c.is_ascii_digit()) {
             return "";
         }
-        let is_key = super::words::key_of(&rest[..end]).is_some();
+        let is_key = crate::keys::key_of(&rest[..end]).is_some();
         if let Some(inside) = rest[end..].strip_prefix('[').filter(|_| end > 0 && !is_key) {
             let digits = inside.bytes().take_while(u8::is_ascii_digit).count();
             if digits > 0 && inside[digits..].starts_with(']') {

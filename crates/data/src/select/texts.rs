@@ -6,7 +6,7 @@ use super::data::{Data, Source, Values};
 use super::error::SelectError;
 use super::scan::{number, range};
 use super::tree::{Value, ValueKind, Word};
-use super::words::key_of;
+use crate::keys::key_of;
 use crate::load::Labels;
 use pinhole::internals::text::{listed, one_line, shortened};
 

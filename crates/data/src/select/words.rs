@@ -1,7 +1,7 @@
 //! The words of the language: keys with their aliases, classes, operators and functions.
 
 use super::tree::Step;
-use crate::keys::{KEYS, Key};
+use crate::keys::{KEYS, key_of};
 
 const CLASSES: &[&str] = &[
     "all",
@@ -90,12 +90,6 @@ const OPERATORS: &[&str] = &[
     "ne",
     "prop",
 ];
-
-/// The key that a word names, in upper or lower case.
-pub(super) fn key_of(word: &str) -> Option<&'static Key> {
-    let is = |name: &&str| name.eq_ignore_ascii_case(word);
-    KEYS.iter().find(|key| is(&key.name) || key.aliases.iter().any(&is))
-}
 
 /// The class that a word names, in upper or lower case.
 pub(super) fn class_of(word: &str) -> Option<&'static str> {
