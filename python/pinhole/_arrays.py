@@ -10,7 +10,7 @@ import numpy as np
 import numpy.typing as npt
 
 from ._errors import InputError, Note
-from ._pinhole import srgb_of_names
+from ._pinhole import is_color_map, srgb_of_names
 
 Array = npt.NDArray[Any]
 
@@ -162,13 +162,91 @@ def is_list(given: Any) -> bool:
 
 
 def column(name: str, given: Any, count: int) -> tuple[list[str], Array] | Array:
-    """Returns a column: numbers in float64, or the different texts and the index of each sphere's text."""
+    """Returns a column: numbers in float64, or the different texts, the first one first, and the index of each sphere's."""
     array = np.asarray(given)
     if array.dtype.kind in "US" or (array.dtype.kind == "O" and all(isinstance(of, str) for of in array.ravel())):
         texts = per_sphere(name, array.astype(str), count)
-        names, indices = np.unique(texts, return_inverse=True)
-        return (names.tolist(), indices.astype(np.uint32).reshape(-1))
+        names, firsts, indices = np.unique(texts, return_index=True, return_inverse=True)
+        order = np.argsort(firsts)
+        places = np.argsort(order).astype(np.uint32)
+        return (names[order].tolist(), places[indices.reshape(-1)])
     return floats(per_sphere(name, numbers(name, given), count), np.float64)
+
+
+def columns(given: Any, count: int) -> dict[str, Any]:
+    """Returns all columns. Those of an array with several numbers for each sphere are called as in files."""
+    if given is None:
+        return {}
+    if not hasattr(given, "items"):
+        raise InputError(f"columns is {type(given).__name__}; it must be a dict of names and arrays of shape ({count},)")
+    found: dict[str, Any] = {}
+    for name, item in given.items():
+        parts = {str(name): item}
+        if np.ndim(item) == 2 and np.shape(item)[0] == count and np.shape(item)[1] > 1:
+            array, width = np.asarray(item), np.shape(item)[1]
+            ends = "xyz" if width <= 3 else range(width)
+            parts = {f"{name}.{end}": array[:, place] for place, end in zip(range(width), ends)}
+        found.update({part: column(f"columns[{part!r}]", of, count) for part, of in parts.items()})
+    return found
+
+
+def cell(given: Any, origin: Any, pbc: Any) -> tuple[list[list[float]], list[float], list[bool]] | None:
+    """The edges of a periodic cell, its corner, and whether the data repeats along each edge; None if there is none."""
+    if given is None:
+        return None
+    edges = numbers("cell", given).astype(float)
+    if edges.shape == (3,):
+        edges = np.diag(edges)
+    if edges.shape != (3, 3) or not np.isfinite(edges).all():
+        raise InputError(f"cell has the shape {np.shape(given)}; it must be three lengths, or (3, 3) with an edge in each row")
+    if np.linalg.det(edges) == 0.0:
+        raise InputError(f"cell is {np.asarray(given).tolist()}; its edges must not lie in one plane")
+    corner = numbers("origin", (0.0, 0.0, 0.0) if origin is None else origin).astype(float)
+    repeats = np.broadcast_to(np.asarray(pbc, bool), 3)
+    if corner.shape != (3,) or not np.isfinite(corner).all():
+        raise InputError(f"origin is {origin!r}; write three numbers, x, y and z")
+    return edges.tolist(), corner.tolist(), repeats.tolist()
+
+
+def pairs(given: Any, count: int) -> Array | None:
+    """Bonds: pairs of indices, uint32 of shape (k, 2)."""
+    if given is None:
+        return None
+    array = np.asarray(given)
+    if array.size == 0:
+        return np.zeros((0, 2), np.uint32)
+    if array.ndim != 2 or array.shape[1] != 2 or array.dtype.kind not in "iu":
+        raise InputError(f"pairs has the shape {array.shape}; it must be (k, 2), with two indices in each row")
+    if array.min() < 0 or array.max() >= count:
+        raise InputError(f"pairs has the index {array.min() if array.min() < 0 else array.max()}; there are {count} spheres")
+    return np.ascontiguousarray(array, np.uint32)
+
+
+def indices(given: Any, count: int) -> Array:
+    """The indices that a mask, a slice, or an array of indices takes from spheres: uint32."""
+    array = np.asarray(given) if not isinstance(given, slice) else given
+    if isinstance(array, np.ndarray) and array.size == 0:
+        return np.zeros(0, np.uint32)
+    if isinstance(array, np.ndarray) and array.dtype.kind not in "biu":
+        raise InputError(f"spheres[{given!r}]: give a name of a column, a mask, a slice, or indices")
+    if isinstance(array, np.ndarray) and array.dtype.kind == "b" and array.shape != (count,):
+        raise InputError(f"the mask has the shape {array.shape} for {count} spheres")
+    return np.atleast_1d(np.arange(count, dtype=np.uint32)[array])
+
+
+def map_name(cmap: Any) -> Any:
+    """The name of a colour map of matplotlib, or colours that are blended into one that is not known here."""
+    if cmap is None or isinstance(cmap, str):
+        return cmap
+    if is_list(cmap) and all(isinstance(color, str) for color in cmap):
+        return ",".join(cmap)
+    if not callable(cmap):
+        raise InputError(f'cmap is {cmap!r}; write a name such as "viridis", or give a colour map of matplotlib')
+    name = str(getattr(cmap, "name", ""))
+    if is_color_map(name):
+        return name
+    colors = [cmap(step / 15)[:3] for step in range(16)]
+    return ",".join("#" + "".join(f"{round(255 * float(part)):02x}" for part in color) for color in colors)
 
 
 def triple(color: Any) -> Any:

@@ -8,13 +8,14 @@ from typing import Any
 import numpy as np
 
 from ._errors import InputError
+from ._pinhole import keys_of
 
 
 class Camera:
     """A camera. Lengths are in scene units, and angles in degrees.
 
     ``Camera.look_at`` places a camera, and ``Camera.frame`` lets it frame all spheres. ``kind`` is ``"pinhole"``,
-    ``"orthographic"``, ``"thin-lens"``, ``"panorama"`` or ``"fisheye"``; further keywords are the keys of the scene file's
+    ``"orthographic"``, ``"thin-lens"``, ``"panorama"`` or ``"fisheye"``, by default that of the kind of data; further keywords are the keys of the scene file's
     table ``[camera.KIND]``, such as ``aperture_radius``, ``focus_on``, ``half_extent`` or ``stereo``.
     """
 
@@ -22,7 +23,7 @@ class Camera:
 
     def __init__(
         self,
-        kind: str = "pinhole",
+        kind: str | None = None,
         *,
         view: str | Sequence[float] | None = None,
         turn: float = 0.0,
@@ -52,7 +53,7 @@ class Camera:
         *,
         up: Sequence[float] = (0.0, 1.0, 0.0),
         fov: float | None = None,
-        kind: str = "pinhole",
+        kind: str | None = None,
         **keys: Any,
     ) -> Camera:
         """A camera at the point ``eye`` that looks at the point ``at``. ``fov`` is the vertical field of view."""
@@ -68,7 +69,7 @@ class Camera:
         zoom: float | None = None,
         margin: float | None = None,
         fov: float | None = None,
-        kind: str = "pinhole",
+        kind: str | None = None,
         **keys: Any,
     ) -> Camera:
         """A camera that frames all spheres.
@@ -85,18 +86,37 @@ class Camera:
     def _table(self, data: Any) -> dict[str, Any]:
         """Returns the table ``camera`` of a scene file for a camera that frames spheres."""
         keys: dict[str, Any] = dict(self.keys)
-        if self.view is not None or not self._is_placed():
-            direction, up = data.view_axes(self.view, self.turn, self.up)
+        kind, direction, usual_up = self._usual(data)
+        if direction is not None:
+            keys["direction"], keys["up"] = direction, usual_up
+        elif self.view is not None or not self._is_placed():
+            up = usual_up if self.up is None else self.up
+            direction, up = data.view_axes(self.view, self.turn, up)
             keys["direction"], keys["up"] = list(direction), list(up)
         elif self.turn != 0.0:
             raise InputError("turn applies to a camera that frames the spheres; remove turn, eye or direction")
         elif self.up is not None:
             keys["up"] = list(self.up)
-        return {self.kind: keys}
+        return {kind: keys}
+
+    def _usual(self, data: Any) -> tuple[str, Sequence[float] | None, Sequence[float] | None]:
+        """The kind of the camera; the direction in which it sees this kind of data, unless this camera has a view or that is
+        the usual one; and the direction that is up then, if it is not the usual one.
+        """
+        view = data.kind()[3]
+        is_placed = self.up is not None or any(key in self.keys for key in ("eye", "look_at", "stereo"))
+        if view is None or is_placed or self.kind in ("panorama", "fisheye"):
+            return self.kind or "pinhole", None, None
+        camera, direction, up = view
+        has_view = self.view is not None or self.turn != 0.0 or any(key in self.keys for key in ("direction", "focus_on"))
+        is_along = camera == "orthographic" or direction is None
+        if any(key not in keys_of("camera.orthographic") for key in self.keys):
+            camera = "pinhole"
+        return self.kind or camera, None if has_view else direction, up if is_along or not has_view else None
 
     def __repr__(self) -> str:
         shown = {"view": self.view, "turn": self.turn or None, "up": self.up, **self.keys}
-        words = [repr(self.kind), *(f"{key}={item!r}" for key, item in shown.items() if item is not None)]
+        words = [*([repr(self.kind)] if self.kind else []), *(f"{key}={item!r}" for key, item in shown.items() if item is not None)]
         return f"Camera({', '.join(words)})"
 
 

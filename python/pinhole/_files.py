@@ -4,16 +4,24 @@ from __future__ import annotations
 
 import os
 from collections.abc import Iterable, Sequence
-from typing import Any, overload
+from typing import Any, Protocol, overload
 
 from . import _settings
 from ._camera import Camera
 from ._errors import InputError
 from ._image import Image
 from ._movie import movie
-from ._pinhole import FileData, JoinedFrames
+from ._pinhole import FileData, JoinedFrames, SphereData
 from ._shapes import warn
 from ._spheres import Spheres
+
+
+class Frames(Protocol):
+    """What reads frames."""
+
+    def __len__(self) -> int: ...
+
+    def frame(self, index: int, text: _settings.Text, keys: JoinedFrames | None) -> SphereData: ...
 
 
 class Trajectory(Sequence[Spheres]):
@@ -27,7 +35,7 @@ class Trajectory(Sequence[Spheres]):
     #: The default camera of ``render`` and ``movie``.
     camera: Camera | None
 
-    def __init__(self, file: FileData, frames: range, settings: dict[str, Any]) -> None:
+    def __init__(self, file: Frames, frames: range, settings: dict[str, Any]) -> None:
         self._file, self._frames, self._settings = file, frames, settings
         self.camera = None
 

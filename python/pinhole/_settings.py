@@ -19,14 +19,14 @@ DATA_KEYS = tuple(key for key in (*keys_of_data(), "elements", "materials") if k
 
 #: The keys of a scene file that are about pictures. They are arguments of ``render``.
 PICTURE_KEYS = tuple(
-    key for key in keys_of("") if key not in {*DATA_KEYS, *_READING, "data", "spheres", "cylinders", "cones", "tubes", "camera_path"}
+    key for key in keys_of("") if key not in {*DATA_KEYS, *_READING, "data", "kind", "spheres", "cylinders", "cones", "tubes", "camera_path"}
 )
 
 #: Short forms of keys of tables, which are called like the flags of the program.
 SHORT = {name: (table, key) for name, table, key in short_forms()}
 
-#: A text, with the argument of each of its lines.
-Text = tuple[str, list[str]]
+#: A text, with the argument of each of its lines, and the kind of data that was asked for.
+Text = tuple[str, list[str], "str | None"]
 
 
 def value(item: Any, argument: str) -> str:
@@ -67,12 +67,12 @@ def bare(key: object) -> str:
     return text if re.fullmatch("[A-Za-z0-9_-]+", text) else quoted(text)
 
 
-def scene_text(settings: Mapping[str, Any]) -> tuple[str, list[str]]:
+def scene_text(settings: Mapping[str, Any]) -> Text:
     """Writes the text of a scene file, and returns the argument of each line as well."""
     lines: list[tuple[str, str]] = []
     tables: list[tuple[str, str]] = []
     for key, item in settings.items():
-        if item is None:
+        if item is None or key == "kind":
             continue
         if isinstance(item, Mapping):
             tables.append((f"[{key}]", key))
@@ -90,7 +90,8 @@ def scene_text(settings: Mapping[str, Any]) -> tuple[str, list[str]]:
         else:
             lines.append((f"{key} = {value(item, key)}", key))
     all_lines = lines + tables
-    return "".join(f"{line}\n" for line, _ in all_lines), [argument for _, argument in all_lines]
+    text = "".join(f"{line}\n" for line, _ in all_lines)
+    return text, [argument for _, argument in all_lines], settings.get("kind")
 
 
 class Tagged(dict[str, Any]):
@@ -122,11 +123,13 @@ def refuse_unknown(settings: Mapping[str, Any], known: tuple[str, ...], other: t
 
 def data_settings(settings: Mapping[str, Any]) -> dict[str, Any]:
     """Returns checked settings about data."""
-    refuse_unknown(settings, DATA_KEYS, (*PICTURE_KEYS, *SHORT, "size"), "render(...)")
+    refuse_unknown(settings, (*DATA_KEYS, "kind"), (*PICTURE_KEYS, *SHORT, "size"), "render(...)")
     settings = {key: item for key, item in settings.items() if item is not None}
     select = settings.get("select")
     if select is not None and not isinstance(select, str):
         raise InputError('select is not a text; write one such as "x > 0", or leave out rows before: positions[mask]')
+    if not isinstance(settings.get("kind", ""), str):
+        raise InputError(f'kind is {settings["kind"]!r}; write the name of a kind, such as "crystal", or "plain"')
     if "show" in settings:
         settings["show"] = show_tables(settings["show"])
     material = settings.get("material")
@@ -176,14 +179,14 @@ def material_tables(given: list[Any], known: Any) -> tuple[dict[str, Any], list[
 
 def data_text(settings: Mapping[str, Any]) -> Text:
     """Writes settings about data as the text of a scene file."""
-    if not settings:
-        return ("", [])
+    if not settings.keys() - {"kind"}:
+        return ("", [], settings.get("kind"))
     return scene_text({"data": "spheres", **settings})
 
 
 def picture_settings(settings: Mapping[str, Any]) -> dict[str, Any]:
     """Returns checked settings about a picture, with short forms in their tables."""
-    refuse_unknown(settings, (*PICTURE_KEYS, *SHORT, "size", "light"), DATA_KEYS, "Spheres(...), read(...) or with_(...)")
+    refuse_unknown(settings, (*PICTURE_KEYS, *SHORT, "size", "light"), (*DATA_KEYS, "kind"), "Spheres(...), read(...) or with_(...)")
     tables: dict[str, Any] = {key: item for key, item in settings.items() if key in PICTURE_KEYS and item is not None}
     for name in ("legend", "scale_bar", "axes"):
         if isinstance(tables.get(name), bool) and tables.pop(name):

@@ -75,12 +75,15 @@ class Shapes:
 
     def _text(self, settings: Mapping[str, Any]) -> Text:
         tables = _settings.picture_settings(settings)
-        tables = {"style": _settings.style_of(tables), **tables}
+        _, of_kind, background, _ = self._data.kind()
+        tables = {"style": _settings.style_of(tables), "background": background, **tables}
         camera = tables.pop("camera", None)
         camera = as_camera(self.camera if camera is None else camera)
         tables["camera"] = camera._table(self._data) if isinstance(camera, Camera) else camera
-        data = {"data": "spheres", **self._settings} if self._settings else {}
-        return _settings.scene_text({**data, **tables})
+        data = {"data": "spheres", **self._settings} if self._settings or of_kind else {}
+        text, arguments, kind = _settings.scene_text({**data, **tables})
+        # What follows from the kind of data stands before all tables.
+        return of_kind + text, [*("" for _ in of_kind.splitlines()), *arguments], kind
 
     def render(
         self,
@@ -190,8 +193,11 @@ class Shapes:
             raise InputError(f"frames is {frames!r}; it must be a whole number of at least 1")
         camera = settings.pop("camera", None)
         camera = as_camera(self.camera if camera is None else camera)
-        if not isinstance(camera, Camera) or camera.kind != "pinhole":
+        if not isinstance(camera, Camera) or camera.kind not in (None, "pinhole"):
             raise InputError("a turntable needs a pinhole camera, such as Camera.frame(view, zoom=...)")
+        _, direction, usual = camera._usual(self._data)
+        keys = camera.keys if direction is None else {**camera.keys, "direction": direction}
+        camera = Camera("pinhole", view=camera.view, turn=camera.turn, up=camera.up or usual, **keys)
         up = np.array(camera.up or self._data.view_axes("x", 0.0, None)[1], float)
         up = up / np.linalg.norm(up)
         (kind, placed), = self._placed({**settings, "camera": camera}, axis=up).items()
@@ -221,4 +227,4 @@ def warn(notes: Iterable[str]) -> None:
         if note.startswith("colors show "):
             # A default range is to be expected, and `Spheres.notes` has it.
             continue
-        warnings.warn(note.replace("--radius sets it", "radius=... sets it"), Note, stacklevel=3)
+        warnings.warn(note, Note, stacklevel=3)

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
-from typing import Any
+from typing import Any, overload
 
 import numpy as np
 import numpy.typing as npt
@@ -11,7 +11,7 @@ import numpy.typing as npt
 from . import _arrays, _settings
 from ._camera import Camera
 from ._errors import InputError
-from ._pinhole import SphereData
+from ._pinhole import SphereData, column_of, mask, of_arrays, restyled, taken
 from ._shapes import Shapes, counted, warn
 
 Array = npt.NDArray[Any]
@@ -40,10 +40,17 @@ class Spheres(Shapes):
     material
         A ``Material``; or a list of n, which may be names from ``materials={"name": Material(...)}``.
     columns
-        Named arrays of shape (n,), for ``color_by``, ``radius_by``, ``select`` and so on.
+        Named arrays of shape (n,), for ``color_by``, ``radius_by``, ``select`` and so on; one of shape (n, 3) is a vector. A
+        column ``element`` gives radii and colours, and ``name`` with ``resname`` does so for atoms.
+    cell
+        The edges of the periodic cell: three lengths, or shape (3, 3) with an edge in each row. It starts at ``origin``,
+        and ``pbc`` says along which edges the data repeats.
+    pairs
+        Bonds, shape (k, 2): pairs of indices. They are drawn where bonds are, as with ``bonds=True``.
     settings
         The keys of a scene file about data: ``color_by``, ``radius_by``, ``opacity_by``, ``emission_by``,
-        ``select``, ``leave_out``, ``elements``, ``bonds``, ``box``, ``radius_scale``.
+        ``select``, ``leave_out``, ``elements``, ``bonds``, ``box``, ``radius_scale``, ``show``, ``replicate``. ``kind`` is
+        the kind of data, such as ``"crystal"``, which decides what no setting says; ``"plain"`` decides nothing.
 
     >>> import pinhole
     >>> pinhole.Spheres([[0, 0, 0], [1, 0, 0]], radius=0.5, color="tomato")
@@ -63,17 +70,17 @@ class Spheres(Shapes):
         opacity: Any = None,
         material: Any = None,
         columns: Mapping[str, Any] | None = None,
+        cell: Any = None,
+        origin: Any = None,
+        pbc: Any = True,
+        pairs: Any = None,
         **settings: Any,
     ) -> None:
         centers = _arrays.positions("positions", positions)
         count = len(centers)
         radii = _arrays.radii(radius, centers)
-        if columns is not None and not hasattr(columns, "items"):
-            raise InputError(f"columns is {type(columns).__name__}; it must be a dict of names and arrays of shape ({count},)")
-        named = {
-            str(name): _arrays.column(f"columns[{name!r}]", item, count)
-            for name, item in ({} if columns is None else columns).items()
-        }
+        named = _arrays.columns(columns, count)
+        cmap = _arrays.map_name(cmap)
         colors = None
         if color is not None and _arrays.is_colors(color):
             colors = _arrays.colors(color, count)
@@ -110,7 +117,8 @@ class Spheres(Shapes):
         self._settings = _settings.data_settings(settings)
         self.camera = None
         text = _settings.data_text(self._settings)
-        self._data = SphereData.of_arrays(centers, radii, colors, list(named.items()), text)
+        edges, bonds = _arrays.cell(cell, origin, pbc), _arrays.pairs(pairs, count)
+        self._data = of_arrays(centers, radii, colors, list(named.items()), text, edges, bonds, None)
         warn(self._data.notes)
 
     @classmethod
@@ -137,14 +145,40 @@ class Spheres(Shapes):
         """The same data with other settings, for spheres with columns. Arguments are the settings of ``Spheres``."""
         if cmap is not None or color_range is not None:
             by = settings.get("color_by", self._settings.get("color_by"))
-            settings["color_by"] = _with_map(by, cmap, color_range)
+            settings["color_by"] = _with_map(by, _arrays.map_name(cmap), color_range)
         checked = {**self._settings, **_settings.data_settings(settings)}
-        made = self._of(self._data.restyled(_settings.data_text(checked)), checked, self.camera)
-        warn(made._data.notes)
-        return made
+        return self._made(restyled(self._data, _settings.data_text(checked)), checked)
+
+    def _made(self, data: SphereData, settings: dict[str, Any]) -> Spheres:
+        """Spheres of other data, with the same camera."""
+        warn(data.notes)
+        return self._of(data, settings, self.camera)
+
+    def mask(self, selection: str) -> Array:
+        """Whether a selection such as ``"protein and within 5 of resname HEM"`` chooses each sphere of the picture: bool, of
+        shape (n,).
+        """
+        chosen, notes = mask(self._data, selection)
+        warn(notes)
+        return chosen
+
+    def select(self, selection: str) -> Spheres:
+        """The spheres that a selection chooses, such as ``"chain A"``, as spheres of their own."""
+        if self.columns or self.cell is not None:
+            before = self._settings.get("select")
+            return self.with_(select=selection if before is None else f"({before}) and ({selection})")
+        chosen = self.mask(selection)
+        if not chosen.any():
+            raise InputError(f"select: nothing is chosen by {selection!r}")
+        return self[chosen]
 
     def __len__(self) -> int:
         return len(self._data)
+
+    @property
+    def kind(self) -> str | None:
+        """The name of the kind of data, which decides what no setting says; None for spheres with a colour for each."""
+        return self._data.kind()[0]
 
     def __repr__(self) -> str:
         names = self._data.column_names()
@@ -184,15 +218,27 @@ class Spheres(Shapes):
         """The names of the columns."""
         return self._data.column_names()
 
-    def __getitem__(self, name: str) -> Array:
-        """A column: float64, or text, of shape (n,)."""
-        found = self._data.column(name)
-        if found is None:
-            raise InputError(f"there is no column {name!r}; the columns are {', '.join(self.columns) or 'none'}")
-        if isinstance(found, tuple):
-            names, indices = found
-            return np.array(names)[indices]
-        return found
+    @overload
+    def __getitem__(self, name: str) -> Array: ...
+    @overload
+    def __getitem__(self, name: Any) -> Spheres: ...
+    def __getitem__(self, name: Any) -> Any:
+        """A column, such as ``spheres["b_factor"]``: float64 or text, of shape (n,); a vector has the shape (n, 3).
+        ``"x"``, ``"radius"`` and ``"index"`` always exist. A mask, a slice or an array of indices gives a part of the spheres.
+        """
+        if isinstance(name, str):
+            found = column_of(self._data, name)
+            if isinstance(found, tuple):
+                names, indices = found
+                return np.array(names)[indices]
+            return found
+        taken_already = {"select", "leave_out", "replicate"}
+        if not self.columns and self.cell is None:
+            # These spheres have their final radii.
+            taken_already.add("radius_scale")
+        rest = {key: of for key, of in self._settings.items() if key not in taken_already}
+        indices = _arrays.indices(name, len(self))
+        return self._made(taken(self._data, indices, _settings.data_text(rest)), rest)
 
     def update(self, *, positions: Any = None, radius: Any = None, color: Any = None, first: int = 0) -> None:
         """Gives spheres new centres, radii or colours in place, from the sphere ``first`` on.

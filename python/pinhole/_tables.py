@@ -10,7 +10,7 @@ from typing import Any, ClassVar
 import numpy as np
 
 from . import _settings
-from ._pinhole import SphereData, keys_of
+from ._pinhole import SphereData, keys_of, of_arrays
 
 
 class Table(_settings.Tagged):
@@ -53,7 +53,7 @@ class Table(_settings.Tagged):
 @cache
 def _nothing() -> SphereData:
     """Makes data without spheres, for checking texts."""
-    return SphereData.of_arrays(np.zeros((0, 3), np.float32), 1.0, None, [], ("", []))
+    return of_arrays(np.zeros((0, 3), np.float32), 1.0, None, [], ("", [], None), None, None, None)
 
 
 def _toml(head: str, name: str, table: Mapping[str, Any]) -> str:

@@ -9,7 +9,8 @@ use pyo3::types::PyDict;
 use crate::fault::{Fault, Outcome};
 use pinhole::{LinearRgb, SphereArray};
 use pinhole_data::css;
-use pinhole_figure::color_by::{ColorKey, KeyKind};
+use pinhole_data::load::{Column, ColumnValues, Labels};
+use pinhole_figure::color_by::{ColorKey, KeyKind, MapName};
 
 /// Centres, an array of shape (n, 3).
 #[derive(FromPyObject)]
@@ -25,6 +26,14 @@ pub(crate) enum Radii<'py> {
     Wide(PyReadonlyArray1<'py, f64>),
     /// The radius of all spheres.
     All(f64),
+}
+
+/// The values of a column.
+#[derive(FromPyObject)]
+pub(crate) enum Values<'py> {
+    Numbers(PyReadonlyArray1<'py, f64>),
+    /// The different texts, and the index of each sphere's text.
+    Texts(Vec<String>, PyReadonlyArray1<'py, u32>),
 }
 
 /// Colours, an array of shape (n, 3) or (n, 4).
@@ -69,6 +78,15 @@ fn all<T: Copy>(centers: ArrayView2<'_, T>, radius: T) -> Vec<[T; 4]> {
 fn each<T: Copy>(centers: ArrayView2<'_, T>, radii: ArrayView1<'_, T>) -> Vec<[T; 4]> {
     let rows = centers.rows().into_iter().zip(radii);
     rows.map(|(center, radius)| [center[0], center[1], center[2], *radius]).collect()
+}
+
+/// A column with its name.
+pub(crate) fn column((name, values): (String, Values<'_>)) -> Outcome<Column> {
+    let values = match values {
+        Values::Numbers(numbers) => ColumnValues::Numbers(numbers.as_array().to_vec()),
+        Values::Texts(names, indices) => ColumnValues::Labels(Labels { names, indices: indices.as_array().to_vec() }),
+    };
+    Ok(Column { name, values })
 }
 
 impl ColorArray<'_> {
@@ -134,4 +152,10 @@ pub(crate) fn in_python(py: Python<'_>, key: &ColorKey) -> PyResult<Py<PyAny>> {
 pub(crate) fn srgb_of_names(names: Vec<String>) -> Option<Vec<u8>> {
     let colors = names.iter().map(|name| css::color(name).ok().map(LinearRgb::to_srgb8));
     colors.collect::<Option<Vec<_>>>().map(|colors| colors.into_flattened())
+}
+
+/// Whether there is a colour map of this name.
+#[pyfunction]
+pub(crate) fn is_color_map(name: &str) -> bool {
+    name.parse::<MapName>().is_ok()
 }

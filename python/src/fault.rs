@@ -39,6 +39,19 @@ impl Fault {
     }
 }
 
+/// A message in the words of Python: arguments in the place of flags.
+pub(crate) fn in_python(message: &str) -> String {
+    const WORDS: [(&str, &str); 6] = [
+        ("--radius sets it", "radius=... sets it"),
+        ("--bond-length L", "bonds={\"length\": L}"),
+        ("leave out `--box`, or the key `box`", "leave out box"),
+        ("by --frame", "by frame=..."),
+        ("with --columns ", "with columns="),
+        ("give --topology ", "give as topology=... "),
+    ];
+    WORDS.iter().fold(message.to_owned(), |text, (flag, argument)| text.replace(flag, argument))
+}
+
 impl From<GpuError> for Fault {
     fn from(error: GpuError) -> Self {
         let message = error.to_string();
@@ -62,8 +75,8 @@ impl From<Fault> for PyErr {
     fn from(fault: Fault) -> Self {
         let (class, message) = match fault {
             Fault::Python(error) => return error,
-            Fault::Input(message) => ("InputError", message),
-            Fault::File(message) => ("FileError", message),
+            Fault::Input(message) => ("InputError", in_python(&message)),
+            Fault::File(message) => ("FileError", in_python(&message)),
             Fault::Device(message) | Fault::Lost(message) => ("DeviceError", message),
             Fault::Stopped => ("DeviceError", "stopped before the work was finished".to_owned()),
             Fault::Internal(message) => ("InternalError", message),

@@ -10,6 +10,7 @@ use crate::look::{self, SceneText};
 use crate::scene::DataExtras;
 use crate::spheres::SphereData;
 use crate::worker;
+use pinhole_data::kind::Traits;
 use pinhole_data::load::{self, Dataset, Format, LoadError, Options, Trajectory};
 use pinhole_figure::color_by::JoinedKeys;
 use pinhole_figure::framing::Union;
@@ -67,14 +68,16 @@ impl FileData {
         text: SceneText,
         keys: Option<&JoinedFrames>,
     ) -> PyResult<SphereData> {
-        let (this, keys) = (slf.unbind(), keys.map(JoinedFrames::joined));
+        let this = slf.unbind();
+        let (keys, traits) = keys.map(JoinedFrames::joined).unzip();
         Ok(worker::run(py, None, move |_| {
             let this = this.get();
             let mut loaded = this.read(index)?;
             for note in &mut loaded.notes {
                 *note = format!("{}: {note}", this.path);
             }
-            let given = DataExtras { colors: None, radii: this.options.radius.is_some(), keys };
+            let radii = this.options.radius.is_some();
+            let given = DataExtras { radii, keys, traits: traits.flatten(), ..DataExtras::default() };
             SphereData::of_loaded(loaded, &text, given, this.format.z_is_up).map_err(|fault| this.in_file(fault))
         })?)
     }
@@ -117,6 +120,8 @@ fn format_of(path: &str, name: Option<&str>) -> Outcome<&'static Format> {
 #[derive(Default)]
 pub(crate) struct JoinedFrames {
     joined: Mutex<(JoinedKeys, Union)>,
+    /// The traits of the first frame, which decide for all of them.
+    traits: Mutex<Option<Traits>>,
 }
 
 #[pymethods]
@@ -130,6 +135,11 @@ impl JoinedFrames {
     fn add(&self, frame: &SphereData) {
         let mut joined = self.joined.lock().unwrap_or_else(PoisonError::into_inner);
         joined.1.add(&frame.scene());
+        if let Some(traits) = &frame.traits {
+            let mut first = self.traits.lock().unwrap_or_else(PoisonError::into_inner);
+            // Spheres may move anywhere, so that all of them are framed.
+            first.get_or_insert_with(|| Traits { bulk: None, ..traits.clone() });
+        }
         if let Some(key) = &frame.key {
             joined.0.add(key);
         }
@@ -147,7 +157,9 @@ impl JoinedFrames {
 }
 
 impl JoinedFrames {
-    pub(crate) fn joined(&self) -> JoinedKeys {
-        self.joined.lock().unwrap_or_else(PoisonError::into_inner).0.clone()
+    /// The meaning of colours in all frames, and the traits of the first.
+    pub(crate) fn joined(&self) -> (JoinedKeys, Option<Traits>) {
+        let traits = self.traits.lock().unwrap_or_else(PoisonError::into_inner).clone();
+        (self.joined.lock().unwrap_or_else(PoisonError::into_inner).0.clone(), traits)
     }
 }

@@ -10,9 +10,11 @@ use pinhole::camera::{Camera, CameraError};
 use pinhole::light::environment::Environment;
 use pinhole::{Encoding, Film, LayerSet, RenderSettings, Scene, View};
 use pinhole_data::added::ArrowKey;
+use pinhole_data::kind::{Kind, Traits};
 use pinhole_data::load::open_regular;
 use pinhole_figure::annotate::{AnnotationError, Annotations};
 use pinhole_figure::color_by::ColorKey;
+use pinhole_figure::kind::KindSettings;
 use pinhole_figure::read::environment;
 use pinhole_figure::scene_file::{IntegratorKind, SceneFile, SceneFileError};
 
@@ -22,20 +24,48 @@ pub(crate) struct SceneText {
     text: String,
     /// The argument of each line, such as `studio` or `studio.outline`; may be empty.
     arguments: Vec<String>,
+    /// The kind of data that was asked for.
+    kind: Option<Kind>,
 }
 
 impl<'py> FromPyObject<'_, 'py> for SceneText {
     type Error = PyErr;
 
     fn extract(object: Borrowed<'_, 'py, PyAny>) -> PyResult<Self> {
-        let (text, arguments) = object.extract()?;
-        Ok(Self { text, arguments })
+        let (text, arguments, kind): (_, _, Option<String>) = object.extract()?;
+        let of_name = |name: String| {
+            Kind::of_name(&name).ok_or_else(|| {
+                let names: Vec<&str> = Kind::ALL.iter().map(|kind| kind.name()).collect();
+                Fault::Input(format!("kind is {name:?}; the kinds are {}", names.join(", ")))
+            })
+        };
+        Ok(Self { text, arguments, kind: kind.map(of_name).transpose()? })
     }
 }
 
 impl SceneText {
     pub(crate) fn parse(&self) -> Outcome<SceneFile> {
         SceneFile::parse(&self.text).map_err(|error| self.fault(&error))
+    }
+
+    /// The settings of the kind of data, for what the text does not say. `is_given` tells the same for other places.
+    pub(crate) fn of_kind(&self, traits: &Traits, is_given: impl Fn(&str) -> bool) -> KindSettings {
+        let has = |key: &str| self.arguments.iter().any(|of| of.split(['.', '[']).next() == Some(key));
+        KindSettings::new(traits, None, |key| has(key) || is_given(key))
+    }
+
+    /// The text with the settings of a kind of data.
+    pub(crate) fn with_kind(&self, settings: &KindSettings) -> Self {
+        // A text without settings does not name its data either.
+        let data = if self.is_empty() && !settings.data.is_empty() { "data = \"spheres\"\n" } else { "" };
+        let before = [data, &settings.data].concat();
+        let arguments = before.lines().map(|_| String::new()).chain(self.arguments.iter().cloned()).collect();
+        Self { text: before + &self.text, arguments, kind: self.kind }
+    }
+
+    /// The kind of data that was asked for.
+    pub(crate) fn kind(&self) -> Option<Kind> {
+        self.kind
     }
 
     /// Whether there are no settings.

@@ -2,8 +2,10 @@
 
 use crate::fault::{Fault, Outcome};
 use crate::look::SceneText;
+use pinhole_data::kind::{Kind, Traits};
 use pinhole_data::load::Dataset;
 use pinhole_figure::color_by::JoinedKeys;
+use pinhole_figure::kind::KindSettings;
 use pinhole_figure::scene_file::{Data, DataError, DataScene, OwnShapes};
 
 /// Facts about data in addition to the loaded data.
@@ -15,6 +17,33 @@ pub(crate) struct DataExtras {
     pub(crate) radii: bool,
     /// The meaning of colours in all frames, if the data is one of several frames.
     pub(crate) keys: Option<JoinedKeys>,
+    /// The traits of the first of these frames.
+    pub(crate) traits: Option<Traits>,
+    /// Returns true if the caller gave a colour to each sphere.
+    pub(crate) is_colored: bool,
+}
+
+/// The settings that follow from the kind of data, with its traits.
+pub(crate) fn kind_of(loaded: &Dataset, text: &SceneText, given: &DataExtras) -> Outcome<(Traits, KindSettings)> {
+    let traits = match given.traits.clone() {
+        Some(traits) => traits,
+        None => {
+            let select = text.parse()?.data().and_then(|data| data.select.clone());
+            let part = select.filter(|_| text.kind() != Some(Kind::Plain)).map(|select| {
+                let mut part = loaded.clone();
+                // An error shows when the scene is made.
+                drop(select.apply(&mut part));
+                part
+            });
+            Traits::of(part.as_ref().unwrap_or(loaded), text.kind())
+        }
+    };
+    let settings = text.of_kind(&traits, |key| match key {
+        "color" => given.is_colored,
+        "radius" => given.radii,
+        _ => false,
+    });
+    Ok((traits, settings))
 }
 
 /// Makes a scene from data.
@@ -26,6 +55,7 @@ pub(crate) fn scene_of(mut loaded: Dataset, text: &SceneText, given: DataExtras)
             "color applies only to data without colors; use color_by, or elements={...}".to_owned(),
         ));
     }
+    loaded.give_radius(data.radius);
     let kinds = data.color_by_kinds(&loaded, None);
     loaded.notes.extend(kinds.map(|by| by.note_of_kinds("color=...")));
     if let Some(keys) = &given.keys {

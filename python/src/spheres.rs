@@ -6,15 +6,15 @@ use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
 use numpy::{IntoPyArray, PyArray2, PyArrayMethods, PyReadonlyArray1, PyReadonlyArray2};
 use pyo3::prelude::*;
 
-use crate::arrays::{self, Centers, ColorArray, Radii};
+use crate::arrays::{self, Centers, ColorArray};
 use crate::certificate::{self, CertificateData};
 use crate::cones;
 use crate::device::Backend;
-use crate::fault::{Fault, Outcome};
+use crate::fault::{Fault, Outcome, in_python};
 use crate::image::Picture;
 use crate::look::{self, Look, SceneText};
 use crate::render::OnDevice;
-use crate::scene::{DataExtras, scene_of};
+use crate::scene::{DataExtras, kind_of, scene_of};
 use crate::worker;
 use pinhole::camera::Viewpoint;
 use pinhole::glam::DVec3;
@@ -22,9 +22,12 @@ use pinhole::image::Layer;
 use pinhole::scene::{Centers as NewCenters, NewColors, SceneUpdate};
 use pinhole::{LayerSet, Scene};
 use pinhole_data::added::ArrowKey;
-use pinhole_data::load::{Column, ColumnValues, Dataset, Labels};
+use pinhole_data::kind::Traits;
+use pinhole_data::load::{Column, Dataset};
+use pinhole_data::replicate::Replicate;
 use pinhole_figure::color_by::ColorKey;
 use pinhole_figure::framing::swept;
+use pinhole_figure::kind::{KindSettings, KindView};
 use pinhole_figure::scene_file::DataScene;
 
 /// Spheres: arrays or a file, and the settings that concern data.
@@ -37,11 +40,19 @@ pub(crate) struct SphereData {
     pub(crate) arrow_key: Option<ArrowKey>,
     /// The loaded data, if they contain more than the scene.
     pub(crate) loaded: Option<Arc<Dataset>>,
-    /// Whether the caller gave radii.
-    has_radii: bool,
+    /// How the data is repeated, and the columns of the spheres in the picture if these are others than those of the
+    /// data.
+    pub(crate) replicate: Option<Replicate>,
+    pub(crate) shown: Option<Vec<Column>>,
+    /// The traits by which its kind was chosen, and the settings that follow.
+    pub(crate) traits: Option<Traits>,
+    kind: KindSettings,
+    /// Whether the caller gave radii, and a colour to each sphere.
+    pub(crate) has_radii: bool,
+    pub(crate) is_colored: bool,
     /// Whether there are bonds, arrows or rules for what is drawn, which do not follow spheres that move.
     has_sticks: bool,
-    z_is_up: bool,
+    pub(crate) z_is_up: bool,
     /// Notes for the user.
     #[pyo3(get)]
     notes: Vec<String>,
@@ -50,34 +61,53 @@ pub(crate) struct SphereData {
     updates: AtomicU64,
 }
 
-/// The values of a column.
-#[derive(FromPyObject)]
-enum Values<'py> {
-    Numbers(PyReadonlyArray1<'py, f64>),
-    /// The different texts, and the index of each sphere's text.
-    Texts(Vec<String>, PyReadonlyArray1<'py, u32>),
-}
+/// The name of a kind, settings about data, the background, and the camera with two directions.
+type KindOfData = (Option<&'static str>, String, Option<&'static str>, Option<(String, Option<[f64; 3]>, [f64; 3])>);
 
 impl SphereData {
     /// Makes spheres from loaded data.
     pub(crate) fn of_loaded(loaded: Dataset, text: &SceneText, given: DataExtras, z_is_up: bool) -> Outcome<Self> {
         let has_more = !loaded.columns.is_empty() || loaded.cell.is_some();
         let kept = has_more.then(|| Arc::new(loaded.clone()));
-        let has_radii = given.radii;
-        let (scene, key, arrow_key, notes, bonds) = match given.colors {
+        let (has_radii, is_colored) = (given.radii, given.is_colored || given.colors.is_some());
+        let found = given.colors.is_none().then(|| kind_of(&loaded, text, &given)).transpose()?;
+        let (traits, kind) = found.map_or_else(Default::default, |(traits, kind)| (Some(traits), kind));
+        let text = &text.with_kind(&kind);
+        let count = loaded.spheres.len();
+        let (scene, columns, key, arrow_key, mut notes, bonds) = match given.colors {
             // Such colours need no list of distinct colours, which takes long to make.
             Some(colors) => {
                 let scene = Scene::from_parts(loaded.spheres, colors.into());
-                (scene.map_err(Fault::input)?, None, None, loaded.notes, None)
+                (scene.map_err(Fault::input)?, Vec::new(), None, None, loaded.notes, None)
             }
             None => {
-                let DataScene { scene, color_key, arrow_key, notes, bonds, .. } = scene_of(loaded, text, given)?;
-                (scene, color_key, arrow_key, notes, bonds)
+                let DataScene { scene, columns, color_key, arrow_key, notes, bonds, .. } =
+                    scene_of(loaded, text, given)?;
+                (scene, columns, color_key, arrow_key, notes, bonds)
             }
         };
-        let has_rules = text.parse()?.data().is_some_and(|data| !data.shows.is_empty());
+        notes.iter_mut().for_each(|note| *note = in_python(note));
+        notes.extend(kind.notes.iter().map(|note| format!("{}; {}", note.what, note.remedies[1])));
+        let file = text.parse()?;
+        let has_rules = file.data().is_some_and(|data| !data.shows.is_empty());
+        let replicate = file.data().and_then(|data| data.replicate);
+        let shown = (scene.len() - scene.added() != count).then_some(columns);
         let has_sticks = bonds.is_some_and(|bonds| bonds > 0) || arrow_key.is_some() || has_rules;
-        Ok(Self { key, arrow_key, loaded: kept, has_radii, has_sticks, z_is_up, notes, ..Self::of_scene(scene) })
+        Ok(Self {
+            key,
+            arrow_key,
+            loaded: kept,
+            replicate,
+            shown,
+            traits,
+            kind,
+            has_radii,
+            is_colored,
+            has_sticks,
+            z_is_up,
+            notes,
+            ..Self::of_scene(scene)
+        })
     }
 
     /// A scene without columns and notes.
@@ -87,7 +117,12 @@ impl SphereData {
             key: None,
             arrow_key: None,
             loaded: None,
+            replicate: None,
+            shown: None,
+            traits: None,
+            kind: KindSettings::default(),
             has_radii: true,
+            is_colored: false,
             has_sticks: false,
             z_is_up: false,
             notes: Vec::new(),
@@ -110,6 +145,23 @@ impl SphereData {
         (Arc::clone(&scene), self.updates.load(Ordering::Acquire))
     }
 
+    /// The columns of the spheres in the picture.
+    pub(crate) fn columns(&self) -> &[Column] {
+        let of_data = self.loaded.as_ref().map_or(&[][..], |loaded| &loaded.columns);
+        self.shown.as_deref().unwrap_or(of_data)
+    }
+
+    /// The number of spheres of the data in the picture.
+    pub(crate) fn count(&self) -> usize {
+        let scene = self.lock();
+        scene.len() - scene.added()
+    }
+
+    /// Returns true if spheres were moved or changed.
+    pub(crate) fn is_updated(&self) -> bool {
+        self.updates.load(Ordering::Acquire) > 0
+    }
+
     /// Reads the text of a scene file for a picture of the scene.
     pub(crate) fn look(&self, scene: &Scene, text: &SceneText) -> Outcome<Look> {
         Look::new(text, scene, self.key.as_ref(), self.arrow_key.as_ref())
@@ -118,33 +170,6 @@ impl SphereData {
 
 #[pymethods]
 impl SphereData {
-    /// Makes spheres of arrays that Python has checked.
-    #[staticmethod]
-    #[pyo3(signature = (positions, radius, color, columns, text))]
-    fn of_arrays(
-        py: Python<'_>,
-        positions: Centers<'_>,
-        radius: Option<Radii<'_>>,
-        color: Option<ColorArray<'_>>,
-        columns: Vec<(String, Values<'_>)>,
-        text: SceneText,
-    ) -> PyResult<Self> {
-        let spheres = positions.spheres(radius.as_ref())?;
-        let rgba8 = color.as_ref().and_then(ColorArray::rgba8);
-        // The bytes of simple spheres are used unchanged.
-        let is_simple = rgba8.is_some() && columns.is_empty() && text.is_empty();
-        let linear = color.as_ref().filter(|_| !is_simple).map(ColorArray::linear).transpose()?;
-        let opacities = color.as_ref().filter(|_| !is_simple).and_then(ColorArray::opacities);
-        let columns: Vec<Column> = columns.into_iter().map(column).collect::<Result<_, _>>()?;
-        let has_radius = radius.is_some();
-        Ok(worker::run(py, None, move |_| {
-            let mut loaded = if has_radius { Dataset::new(spheres) } else { Dataset::of_centers(spheres) };
-            (loaded.colors, loaded.opacities, loaded.columns) = (linear, opacities, columns);
-            let given = DataExtras { colors: rgba8.filter(|_| is_simple), radii: has_radius, keys: None };
-            Self::of_loaded(loaded, &text, given, false)
-        })?)
-    }
-
     /// Makes cones of arrays that Python has checked.
     #[staticmethod]
     #[pyo3(signature = (arrays, color, caps, round, text))]
@@ -169,9 +194,12 @@ impl SphereData {
         let key = self.key.clone().or_else(|| other.key.clone());
         let arrow_key = self.arrow_key.clone().or_else(|| other.arrow_key.clone());
         let z_is_up = self.z_is_up || other.z_is_up;
+        // What is drawn of the data is drawn already.
+        let shown = if self.kind == KindSettings::default() { &other.kind } else { &self.kind };
+        let kind = KindSettings { data: String::new(), notes: Vec::new(), ..shown.clone() };
         Ok(worker::run(py, None, move |_| {
             let scene = cones::joined([&scenes[0], &scenes[1]])?;
-            Ok(Self { key, arrow_key, z_is_up, ..Self::of_scene(scene) })
+            Ok(Self { key, arrow_key, z_is_up, kind, ..Self::of_scene(scene) })
         })?)
     }
 
@@ -180,30 +208,8 @@ impl SphereData {
         self.lock().cones().len()
     }
 
-    /// Returns the same data with other settings.
-    fn restyled(&self, py: Python<'_>, text: SceneText) -> PyResult<Self> {
-        if self.updates.load(Ordering::Acquire) > 0 {
-            return Err(Fault::Input(
-                "these spheres were updated; make new Spheres(...) with other settings".to_owned(),
-            )
-            .into());
-        }
-        let Some(loaded) = self.loaded.clone() else {
-            return Err(Fault::Input(
-                "these spheres have no columns; make new Spheres(...) with other settings".to_owned(),
-            )
-            .into());
-        };
-        let (radii, z_is_up) = (self.has_radii, self.z_is_up);
-        Ok(worker::run(py, None, move |_| {
-            let given = DataExtras { colors: None, radii, keys: None };
-            Self::of_loaded(loaded.as_ref().clone(), &text, given, z_is_up)
-        })?)
-    }
-
     fn __len__(&self) -> usize {
-        let scene = self.lock();
-        scene.len() - scene.added()
+        self.count()
     }
 
     /// The smallest and the largest coordinates of the spheres; None if there are none.
@@ -234,21 +240,18 @@ impl SphereData {
 
     /// The names of the columns.
     fn column_names(&self) -> Vec<String> {
-        let columns = self.loaded.iter().flat_map(|loaded| &loaded.columns);
-        columns.map(|column| column.name.clone()).collect()
+        self.columns().iter().map(|column| column.name.clone()).collect()
     }
 
-    /// A column: an array of numbers, or the different texts and an array of indices into them.
-    fn column<'py>(&self, py: Python<'py>, name: &str) -> PyResult<Bound<'py, PyAny>> {
-        let loaded = self.loaded.as_ref();
-        match loaded.and_then(|loaded| loaded.column(name)) {
-            Some(ColumnValues::Numbers(numbers)) => Ok(numbers.clone().into_pyarray(py).into_any()),
-            Some(ColumnValues::Labels(Labels { names, indices })) => {
-                let indices = indices.clone().into_pyarray(py);
-                Ok((names.clone(), indices).into_pyobject(py)?.into_any())
-            }
-            _ => Ok(py.None().into_bound(py)),
-        }
+    /// The name of the kind of data, and the settings that follow from it: keys of a scene file about data, the
+    /// background, and the camera with its direction and the direction that is up.
+    fn kind(&self) -> KindOfData {
+        let KindSettings { data, background, view, .. } = &self.kind;
+        let view = view.as_ref();
+        let view = view.map(|KindView { camera, direction, up }| {
+            (camera.clone(), direction.map(|direction| direction.to_array()), up.to_array())
+        });
+        (self.traits.as_ref().map(|traits| traits.kind.name()), data.clone(), *background, view)
     }
 
     /// The meaning of colours, if a column gives them.
@@ -381,12 +384,4 @@ impl SphereData {
             Ok(())
         })?)
     }
-}
-
-fn column((name, values): (String, Values<'_>)) -> Outcome<Column> {
-    let values = match values {
-        Values::Numbers(numbers) => ColumnValues::Numbers(numbers.as_array().to_vec()),
-        Values::Texts(names, indices) => ColumnValues::Labels(Labels { names, indices: indices.as_array().to_vec() }),
-    };
-    Ok(Column { name, values })
 }

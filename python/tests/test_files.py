@@ -27,7 +27,7 @@ def test_a_file_with_one_frame(tmp_path):
     assert np.allclose(water.positions[1], [0.76, 0, -0.5])
     assert len(ph.read(tmp_path / "water.xyz", select="species == H")) == 2
     assert len(ph.read(tmp_path / "water.xyz").with_(leave_out={"species": ["O"]})) == 2
-    with pytest.raises(ph.InputError, match="there is no column 'x2'; the columns are"):
+    with pytest.raises(ph.InputError, match="there is no column `x2`; did you mean `x`. the columns are"):
         water["x2"]
     assert water.render(size=(16, 12), backend="cpu").size == (16, 12)
 
@@ -52,7 +52,7 @@ def test_a_trajectory_is_a_sequence(tmp_path):
 @pytest.mark.filterwarnings("ignore::pinhole.Note")
 def test_the_program_sees_the_same_file(program, tmp_path):
     (tmp_path / "t.extxyz").write_text(frames(3))
-    wanted = program("t.extxyz", "--kind", "plain", "--frame", "1", "--bonds", "--box", "--size", "80x60")
+    wanted = program("t.extxyz", "--frame", "1", "--bonds", "--box", "--size", "80x60")
     spheres = ph.read(tmp_path / "t.extxyz", frame=1, bonds=True, box=True)
     assert spheres.render((80, 60))._repr_png_() == wanted
 

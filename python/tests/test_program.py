@@ -72,7 +72,7 @@ def test_movies_and_turntables(program, tmp_path):
     for style in ("fast", "default"):
         flags = ["--size", "96x72", "--style", style, "--backend", "cpu"]
         settings = {"size": (96, 72), "style": style, "backend": "cpu"}
-        program("t.xyz", *flags, "--kind", "plain", "--frames", ":", output=f"{style}-p%d.png")
+        program("t.xyz", *flags, "--frames", ":", output=f"{style}-p%d.png")
         ph.read(tmp_path / "t.xyz").movie(tmp_path / f"{style}-m%d.png", **settings)
         program("rod.npy", *flags, "--radius", "0.3", "--turntable", "3", output=f"{style}-q%d.png")
         ph.Spheres(rod, 0.3).turntable(tmp_path / f"{style}-t%d.png", frames=3, **settings)
@@ -81,3 +81,69 @@ def test_movies_and_turntables(program, tmp_path):
             for number in range(3):
                 wanted, made = (tmp_path / f"{style}-{kind}{number}.png" for kind in (one, other))
                 assert made.read_bytes() == wanted.read_bytes(), made.name
+
+
+def cubic(side, height, rows):
+    atoms = "".join(f"{species} {x} {y} {z}\n" for species, x, y, z in rows)
+    properties = "Properties=species:S:1:pos:R:3"
+    return f'{len(rows)}\nLattice="{side} 0 0 0 {side} 0 0 0 {height}" {properties}\n{atoms}'
+
+
+SALT = [("Na" if (i + j + k) % 2 else "Cl", 2.8 * i, 2.8 * j, 2.8 * k) for i in (0, 1) for j in (0, 1) for k in (0, 1)]
+ETHANE = [("C", 0, 0, 0.76), ("C", 0, 0, -0.76), ("H", 1, 0, 1.16), ("H", -0.5, 0.9, 1.16), ("H", -0.5, -0.9, 1.16)]
+
+
+def protein():
+    rows = [(f"ATOM  {i:5}  {name:<3} ALA {chain}{i // 2:4}", 1.2 * i, i % 3, i % 2) for i in range(1, 13)
+            for name, chain in [("CA" if i % 2 else "C", "A" if i < 7 else "B")]]
+    rows.append(("HETATM   20  O   HOH A  90", 5, 9, 9))
+    rows.append(("HETATM   21 FE   HEM A  91", 9, 5, 5))
+    return "".join(f"{head}    {x:8.3f}{y:8.3f}{z:8.3f}  1.00  0.00\n" for head, x, y, z in rows)
+
+
+@pytest.mark.filterwarnings("ignore::pinhole.Note")
+@pytest.mark.parametrize(
+    ("name", "text", "kind"),
+    [
+        ("salt.xyz", cubic(5.6, 5.6, SALT), "crystal"),
+        ("slab.xyz", cubic(5.6, 25.6, SALT), "slab"),
+        ("ethane.xyz", "5\n\n" + "".join(f"{s} {x} {y} {z}\n" for s, x, y, z in ETHANE), "molecules"),
+        ("liquid.xyz", cubic(12, 12, [("Ar", 4 * i, 4 * j, 4 * k) for i in range(3) for j in range(3) for k in range(3)]), "liquid"),
+        ("beads.xyz", "9\n\n" + "".join(f"{'AB'[i % 2]} {i} {i * i % 5} {i % 3}\n" for i in range(9)), "particles"),
+        ("protein.pdb", protein(), "biomolecule"),
+        ("far.csv", "x,y,z\n" + "".join(f"{i % 9},{i // 9 % 9},{i // 81}\n" for i in range(1458)) + "900,0,0\n", "plain"),
+    ],
+)
+def test_kinds_of_data(program, tmp_path, name, text, kind):
+    (tmp_path / name).write_text(text)
+    read = ph.read(tmp_path / name)
+    assert read.kind == kind
+    looks = [
+        ((), None),
+        (("--view", "front"), "front"),
+        (("--turn", "20"), ph.Camera.frame(turn=20)),
+        (("--zoom", "1.5"), ph.Camera.frame(zoom=1.5)),
+        (("--fov", "25"), ph.Camera.frame(fov=25)),
+        (("--camera", "orthographic"), ph.Camera("orthographic")),
+        (("--up", "1,0,0"), ph.Camera.frame(up=(1, 0, 0))),
+    ]
+    for flags, camera in looks:
+        wanted = program(name, "--size", "64x48", "--style", "fast", *flags)
+        assert read.render((64, 48), style="fast", camera=camera)._repr_png_() == wanted, (flags, camera)
+    plain = program(name, "--size", "64x48", "--style", "fast", "--kind", "plain")
+    assert ph.read(tmp_path / name, kind="plain").render((64, 48), style="fast")._repr_png_() == plain
+    scene = read.scene_file(size=(64, 48), style="fast").replace('data = "spheres"', f'data = "{name}"')
+    (tmp_path / "s.toml").write_text(scene)
+    assert program("s.toml") == read.render((64, 48), style="fast")._repr_png_()
+
+
+@pytest.mark.filterwarnings("ignore::pinhole.Note")
+def test_arrays_of_atoms_are_drawn_like_their_file(program, tmp_path):
+    (tmp_path / "salt.xyz").write_text(cubic(5.6, 5.6, SALT))
+    elements, *places = zip(*SALT, strict=True)
+    spheres = ph.Spheres(np.transpose(places), columns={"element": elements}, cell=[5.6] * 3)
+    wanted = program("salt.xyz", "--size", "64x48", "--style", "fast")
+    assert spheres.render((64, 48), style="fast")._repr_png_() == wanted
+    wanted = program("salt.xyz", "--size", "64x48", "--style", "fast", "--bonds", "--box", "--radius-scale", "0.4")
+    made = spheres.with_(bonds=True, box=True, radius_scale=0.4).render((64, 48), style="fast")
+    assert made._repr_png_() == wanted

@@ -85,7 +85,7 @@ fn of_data(path: &Path, format: &'static Format, options: &DataOptions) -> Resul
         let problem = trajectory.problem().map(ToString::to_string);
         let frame = trajectory.frame(options.frame.unwrap_or_default());
         let mut loaded = frame.map_err(|error| data::named(path, error))?;
-        data::give_radius(&mut loaded, options.radius);
+        loaded.give_radius(options.radius);
         (loaded, Some(trajectory.len()), problem)
     } else {
         let mut loaded = data::read(path, format, options)?;

@@ -200,12 +200,12 @@ impl Source {
             let with_kind = self.scene_of_kind(&choice)?;
             data = self.keys_of_data(&with_kind).unwrap_or(data);
             if place.options.radius.is_none() {
-                data::give_radius(&mut loaded, data.radius);
+                loaded.give_radius(data.radius);
             }
             let colors = data.color_by_kinds(&loaded, choice.colors.take());
             data.mapping.color.iter_mut().for_each(|by| self.joined.apply_to(by));
             let of_colors = colors.as_ref().map(|by| by.note_of_kinds("--color CSS"));
-            let notes = choice.notes.iter().copied().map(str::to_owned).chain(of_colors);
+            let notes = choice.notes.iter().cloned().chain(of_colors);
             loaded.notes.extend(notes.map(|note| format!("{}: {note}", self.path.display())));
             choice.colors = colors;
             (of_kind, chosen) = (Some(with_kind), Some(choice));

@@ -79,17 +79,9 @@ pub(crate) fn read(path: &Path, format: &'static Format, options: &DataOptions) 
     Ok(loaded)
 }
 
-/// Gives all spheres the radius that is asked for.
-pub(crate) fn give_radius(loaded: &mut Dataset, radius: Option<f64>) {
-    if let Some(radius) = radius {
-        loaded.spheres.map_radii(|_, _| radius);
-        loaded.correct_notes(false, true, |_| false);
-    }
-}
-
 /// Gives all spheres the radius that is asked for, and puts the path before notes.
 fn complete(loaded: &mut Dataset, path: &Path, options: &DataOptions) {
-    give_radius(loaded, options.radius);
+    loaded.give_radius(options.radius);
     for note in &mut loaded.notes {
         *note = format!("{}: {note}", path.display());
     }

@@ -15,52 +15,49 @@ pub(super) const KIND: &str = "--kind";
 #[derive(Clone, Debug)]
 pub(crate) struct Chosen {
     /// The settings of the kind.
-    pub(super) layer: Layer,
+    layer: Layer,
+    /// The kind of the camera that its flags are about.
+    camera: Option<String>,
     /// The colours by kinds of spheres.
     pub(crate) colors: Option<ColorBy>,
     /// The name of the kind, if it decides anything.
     pub(super) name: Option<&'static str>,
     /// Notes for the user.
-    pub(super) notes: Vec<&'static str>,
+    pub(super) notes: Vec<String>,
 }
 
 impl Chosen {
+    /// The layers of all settings, of which `flags` take precedence. Flags of a camera without a name are about the one that
+    /// was chosen.
+    pub(super) fn layers(&self, flags: &[Layer]) -> Vec<Layer> {
+        let renamed = |layer: &Layer| match (&self.camera, layer.text.strip_prefix("camera.pinhole.")) {
+            (Some(camera), Some(rest)) => Layer { flag: layer.flag, text: format!("camera.{camera}.{rest}") },
+            _ => layer.clone(),
+        };
+        [self.layer.clone()].into_iter().chain(flags.iter().map(renamed)).collect()
+    }
+
     /// The choices for data that was read with these flags, of which `select` keeps a part. In a movie spheres may move
     /// anywhere, so that all of them are framed.
     pub(crate) fn of(data: &Dataset, select: Option<&Selection>, given: &Given, is_movie: bool) -> Self {
         let named = given.get("kind").and_then(Kind::of_name);
-        if named == Some(Kind::Plain) {
-            // Nothing follows, so large data need not be looked at.
-            return Self {
-                layer: Layer { flag: KIND, text: String::new() },
-                colors: None,
-                name: None,
-                notes: Vec::new(),
-            };
-        }
-        let mut traits = match select {
-            None => Traits::of(data),
-            Some(select) => {
-                let mut part = data.clone();
-                // An error shows when the scene is made.
-                drop(select.apply(&mut part));
-                Traits::of(&part)
-            }
-        };
+        let part = select.filter(|_| named != Some(Kind::Plain)).map(|select| {
+            let mut part = data.clone();
+            // An error shows when the scene is made.
+            drop(select.apply(&mut part));
+            part
+        });
+        let mut traits = Traits::of(part.as_ref().unwrap_or(data), named);
         traits.bulk = traits.bulk.filter(|_| !is_movie);
-        traits.kind = named.unwrap_or(traits.kind);
-        let has_camera = given.get("camera").is_some() || given.has_key("camera");
-        let camera = has_camera.then(|| given.get("camera").unwrap_or("pinhole"));
-        let settings = match traits.kind {
-            Kind::Plain => KindSettings::default(),
-            _ => KindSettings::new(&traits, camera, |key| match key {
-                // What is hidden or faint is so in what the kind draws.
-                "show" => given.get("show").is_some(),
-                key => given.has_key(key),
-            }),
-        };
-        let name = (!settings.text.is_empty()).then(|| traits.kind.name());
-        let KindSettings { text, notes, .. } = settings;
-        Self { layer: Layer { flag: KIND, text }, colors: None, name, notes }
+        let settings = KindSettings::new(&traits, given.get("camera"), |key| match key {
+            // What is hidden or faint is so in what the kind draws.
+            "show" => given.get("show").is_some(),
+            key => given.has_key(key),
+        });
+        let text = settings.text();
+        let name = (!text.is_empty()).then(|| traits.kind.name());
+        let notes = settings.notes.iter().map(|note| format!("{}; {}", note.what, note.remedies[0])).collect();
+        let camera = settings.view.map(|view| view.camera);
+        Self { layer: Layer { flag: KIND, text }, camera, colors: None, name, notes }
     }
 }

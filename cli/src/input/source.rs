@@ -164,10 +164,7 @@ impl Source {
 
     /// The scene that stands for a data file, with what was chosen for it.
     pub(super) fn scene_of_kind(&self, chosen: &Chosen) -> Result<SceneFile, Failure> {
-        // The settings of the kind come first, so that those of flags take their place.
-        let mut layers = self.layers.clone();
-        layers.insert(0, chosen.layer.clone());
-        Self { layers, ..self.clone() }.scene_of_data()
+        Self { layers: chosen.layers(&self.layers), ..self.clone() }.scene_of_data()
     }
 
     /// Reads the text of a scene file, with the flags.

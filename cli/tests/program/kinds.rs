@@ -61,7 +61,10 @@ fn flags_take_the_place_of_what_follows_from_the_kind() {
     };
     let crystal = scene("crystal.xyz --zoom 2 --replicate 2x1x1 --no-box");
     assert!(crystal.contains("replicate = \"2x1x1\"") && crystal.contains("up = [0.0, 0.0, 1.0]"), "{crystal}");
-    assert!(crystal.contains("[camera.pinhole]") && !crystal.contains("box = true"), "{crystal}");
+    assert!(crystal.contains("[camera.orthographic]") && !crystal.contains("box = true"), "{crystal}");
+    let front = scene("crystal.xyz --view front");
+    assert!(front.contains("[camera.orthographic]") && front.contains("up = [0.0, 0.0, 1.0]"), "{front}");
+    assert!(scene("crystal.xyz --fov 20").contains("[camera.pinhole]"));
     let protein = scene("protein.pdb --hide name==CA");
     assert!(protein.contains("as = \"hidden\"") && protein.contains("as = \"spacefill\""), "{protein}");
     assert!(!scene("protein.pdb --show trace").contains("spacefill"));

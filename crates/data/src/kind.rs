@@ -121,10 +121,11 @@ pub struct Traits {
     pub has_water: bool,
     /// Returns true if there are residues that are neither polymers nor water.
     pub has_ligands: bool,
-    /// Returns true if more than a tenth of the spheres have a species that is no element, and nothing gives radii.
-    pub has_beads: bool,
-    /// The direction towards the eye from which data without a cell looks widest, and the direction that is up then, if it
-    /// does not look alike from all sides.
+    /// Returns true if more than a tenth of the spheres have a species that is no element, and nothing gives colours, and
+    /// the same for radii.
+    pub beads_lack: [bool; 2],
+    /// The direction towards the eye from which molecules look widest, and the direction that is up then, if they do not
+    /// look alike from all sides. Those with a cell are seen as it lies, unless they are biomolecules.
     pub widest_view: Option<[DVec3; 2]>,
     /// Two corners of the box in which nearly all centres lie, if some lie so far away that all would be small in a
     /// picture.
@@ -132,21 +133,50 @@ pub struct Traits {
 }
 
 impl Traits {
-    /// Finds the kind of data.
+    /// The traits of data of which nobody wants to know any.
+    fn plain() -> Self {
+        Self {
+            kind: Kind::Plain,
+            has_cell: false,
+            spacing: 0.0,
+            up: DVec3::Z,
+            is_metal: false,
+            has_chains: false,
+            has_water: false,
+            has_ligands: false,
+            beads_lack: [false; 2],
+            widest_view: None,
+            bulk: None,
+        }
+    }
+
+    /// Finds the traits of data, and its kind unless one is asked for. Data that shall be plain is not looked at.
     #[must_use]
-    pub fn of(data: &Dataset) -> Self {
-        let (count, spacing) = (data.spheres.len(), data.spacing());
+    pub fn of(data: &Dataset, asked: Option<Kind>) -> Self {
+        if asked == Some(Kind::Plain) {
+            return Self::plain();
+        }
+        let count = data.spheres.len();
         let species = data.labels("species");
-        let are_elements = species.is_some_and(|labels| labels.names.iter().all(|name| element_symbol(name).is_some()));
-        let are_atoms = are_elements && ATOMS.contains(&spacing);
         let residues = data.labels("residue").map_or(0, |labels| {
             let has_name = |index: &&u32| labels.names.get(**index as usize).is_some_and(|name| !name.is_empty());
             labels.indices.iter().filter(has_name).count()
         });
         let has_residues = count > 0 && 2 * residues >= count;
+        let cell = PeriodicCell::of(data).filter(|_| !data.is_part_of_crystal).map(|cell| cell.edges);
+        if asked.is_none() && species.is_none() && !has_residues && cell.is_none() {
+            // Large data of this kind is common, so it takes no more than one look at each sphere.
+            let may_be_stars = count >= STARS && data.colors.is_none();
+            return match may_be_stars.then(|| bulk(data, STARS_WITHIN)).flatten() {
+                Some(bulk) => Self { kind: Kind::Stars, bulk: Some(bulk), ..Self::plain() },
+                None => Self { bulk: bulk(data, WITHIN), ..Self::plain() },
+            };
+        }
+        let spacing = data.spacing();
+        let are_elements = species.is_some_and(|labels| labels.names.iter().all(|name| element_symbol(name).is_some()));
+        let are_atoms = are_elements && ATOMS.contains(&spacing);
         let polymer = if has_residues { matches("polymer", data) } else { Vec::new() };
         let water = if has_residues { matches("water", data) } else { Vec::new() };
-        let cell = PeriodicCell::of(data).filter(|_| !data.is_part_of_crystal).map(|cell| cell.edges);
         let (gap, gap_up) = cell.map_or((0.0, DVec3::Z), |cell| widest_gap(data, &cell));
         let third = cell.and_then(|cell| cell.z_axis.try_normalize()).unwrap_or(DVec3::Z);
         let with_species = |is: fn(Option<&'static str>) -> bool| {
@@ -156,27 +186,33 @@ impl Traits {
             })
         };
         let metals = with_species(|symbol| symbol.is_some_and(is_metal));
-        let has_beads = !has_residues && data.lacks_radii() && 10 * with_species(|symbol| symbol.is_none()) > count;
-        let kind = if count < 2 {
-            Kind::Plain
-        } else if has_residues && residues_of(data, &polymer) >= 3 && (!are_atoms || spacing >= BEADS) {
-            Kind::Coarse
-        } else if has_residues && residues_of(data, &polymer) >= 3 {
-            Kind::Biomolecule
-        } else if are_atoms {
-            match if count <= SEARCHED { whole(data) } else { Whole::Solid } {
-                Whole::Solid if cell.is_some() && gap >= GAP => Kind::Slab,
-                Whole::Solid if cell.is_some() && count <= CRYSTAL => Kind::Crystal,
-                Whole::Solid => Kind::Atoms,
-                Whole::Molecules if count <= MOLECULES => Kind::Molecules,
-                Whole::Molecules | Whole::Single => Kind::Liquid,
+        let has_beads = !has_residues && 10 * with_species(|symbol| symbol.is_none()) > count;
+        let found = || {
+            if count < if cell.is_some() { 1 } else { 2 } {
+                Kind::Plain
+            } else if has_residues && residues_of(data, &polymer) >= 3 && (!are_atoms || spacing >= BEADS) {
+                Kind::Coarse
+            } else if has_residues && residues_of(data, &polymer) >= 3 {
+                Kind::Biomolecule
+            } else if are_atoms {
+                match if count <= SEARCHED { whole(data) } else { Whole::Solid } {
+                    Whole::Solid if cell.is_some() && gap >= GAP => Kind::Slab,
+                    Whole::Solid if cell.is_some() && count <= CRYSTAL => Kind::Crystal,
+                    Whole::Solid => Kind::Atoms,
+                    Whole::Molecules if count <= MOLECULES => Kind::Molecules,
+                    Whole::Molecules | Whole::Single => Kind::Liquid,
+                }
+            } else if cell.is_some() || species.is_some() {
+                Kind::Particles
+            } else {
+                Kind::Plain
             }
-        } else if cell.is_some() || species.is_some() {
-            Kind::Particles
-        } else if count >= STARS && data.colors.is_none() && bulk(data, STARS_WITHIN).is_some() {
-            Kind::Stars
-        } else {
-            Kind::Plain
+        };
+        let kind = asked.unwrap_or_else(found);
+        let is_turned = match kind {
+            Kind::Biomolecule | Kind::Coarse => true,
+            Kind::Molecules => cell.is_none(),
+            _ => false,
         };
         Self {
             kind,
@@ -187,13 +223,9 @@ impl Traits {
             has_chains: has_several(data, &polymer),
             has_water: water.contains(&true) && water.contains(&false),
             has_ligands: polymer.iter().zip(&water).any(|(is_polymer, is_water)| !is_polymer && !is_water),
-            has_beads,
-            widest_view: if cell.is_some() { None } else { widest_view(data, &water) },
-            bulk: if count < FRAMED {
-                None
-            } else {
-                bulk(data, if kind == Kind::Stars { STARS_WITHIN } else { WITHIN })
-            },
+            beads_lack: data.unknown_lack().map(|lack| lack && has_beads),
+            widest_view: if is_turned { widest_view(data, &water) } else { None },
+            bulk: bulk(data, if kind == Kind::Stars { STARS_WITHIN } else { WITHIN }),
         }
     }
 }
@@ -255,9 +287,12 @@ fn widest_gap(data: &Dataset, cell: &DMat3) -> (f64, DVec3) {
 }
 
 /// The box between two parts of the centres, in their order along each axis, and a little around it; `None` if that of all
-/// centres is less than twice as long.
+/// centres is less than twice as long, or if there are few.
 fn bulk(data: &Dataset, [first, last]: [f64; 2]) -> Option<[DVec3; 2]> {
     let count = data.spheres.len();
+    if count < FRAMED {
+        return None;
+    }
     let side = |axis: usize| -> Option<[f64; 4]> {
         let place = |index: usize| data.center(index)[axis];
         let finite = (0..count).map(place).filter(|place| place.is_finite());
@@ -284,7 +319,7 @@ mod tests {
     use crate::load::{self, Options};
 
     fn traits(name: &str, text: &str) -> Traits {
-        Traits::of(&load::from_bytes(text.as_bytes(), name, &Options::default()).unwrap())
+        Traits::of(&load::from_bytes(text.as_bytes(), name, &Options::default()).unwrap(), None)
     }
 
     fn kind(name: &str, text: &str) -> Kind {
@@ -307,6 +342,7 @@ mod tests {
     #[test]
     fn cells_of_atoms_are_crystals_slabs_or_molecules() {
         assert_eq!(kind("a.xyz", &cell(3.6, 3.6, &COPPER)), Kind::Crystal);
+        assert_eq!(kind("a.xyz", &cell(2.6, 2.6, &COPPER[..1])), Kind::Crystal);
         let slab = traits("a.xyz", &cell(3.6, 13.6, &COPPER));
         assert_eq!((slab.kind, slab.up, slab.is_metal), (Kind::Slab, DVec3::Z, true));
         let water = [("O", [0.0; 3]), ("H", [0.76, 0.59, 0.0]), ("H", [-0.76, 0.59, 0.0])];
@@ -324,10 +360,10 @@ mod tests {
         let beads: String =
             (0..10).map(|i| format!("{} {} 0 0\n", if i % 2 == 0 { "A" } else { "B" }, 3 * i)).collect();
         let beads = traits("a.xyz", &format!("10\n\n{beads}"));
-        assert_eq!((beads.kind, beads.has_beads), (Kind::Particles, true));
+        assert_eq!((beads.kind, beads.beads_lack), (Kind::Particles, [true; 2]));
         // One atom that is a mark only is no bead.
         let marked: String = (0..20).map(|i| format!("{} {} 0 0\n", if i == 3 { "X" } else { "C" }, i)).collect();
-        assert!(!traits("a.xyz", &format!("20\n\n{marked}")).has_beads);
+        assert_eq!(traits("a.xyz", &format!("20\n\n{marked}")).beads_lack, [false; 2]);
         assert_eq!(kind("a.xyz", "1\n\nO 0 0 0\n"), Kind::Plain);
         assert_eq!(kind("a.xyz", "0\n\n"), Kind::Plain);
     }

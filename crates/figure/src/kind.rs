@@ -1,15 +1,42 @@
 //! Settings for each kind of data: shapes, colours and a view, if nobody says so.
 
+use pinhole::camera::Viewpoint;
 use pinhole::glam::DVec3;
 use pinhole_data::kind::{Kind, Traits};
 
+use crate::settings::keys_of;
+
 /// Settings for a kind of data.
-#[derive(Clone, Debug, Default, PartialEq, Eq)]
+#[derive(Clone, Debug, Default, PartialEq)]
 pub struct KindSettings {
-    /// The settings: keys of a scene file.
-    pub text: String,
+    /// The settings about data: keys of a scene file.
+    pub data: String,
+    /// The background.
+    pub background: Option<&'static str>,
+    /// The view.
+    pub view: Option<KindView>,
     /// Notes for the user about what is not drawn.
-    pub notes: Vec<&'static str>,
+    pub notes: Vec<KindNote>,
+}
+
+/// A view of data.
+#[derive(Clone, Debug, PartialEq)]
+pub struct KindView {
+    /// The kind of the camera.
+    pub camera: String,
+    /// The direction of view, if it is not the usual one.
+    pub direction: Option<DVec3>,
+    /// The direction that is up.
+    pub up: DVec3,
+}
+
+/// A note about what a kind leaves out.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct KindNote {
+    /// What is left out.
+    pub what: &'static str,
+    /// How to change that by flags, and by keys.
+    pub remedies: [&'static str; 2],
 }
 
 /// The keys that say what is drawn of data. If one is given, the kind does not say it.
@@ -22,9 +49,9 @@ fn written(length: f64) -> String {
     format!("{digits:?}")
 }
 
-/// A direction with six digits.
-fn direction(direction: DVec3) -> String {
-    direction.to_array().map(|part| format!("{:?}", (part * 1e6).round() / 1e6 + 0.0)).join(", ")
+/// A direction with six digits, so that it can be written.
+fn rounded(direction: DVec3) -> DVec3 {
+    (direction * 1e6).round() / 1e6 + 0.0
 }
 
 /// Returns true if a key gives colours.
@@ -32,8 +59,9 @@ fn is_colored(is_given: &impl Fn(&str) -> bool) -> bool {
     ["color", "color_by", "elements", "show"].iter().any(|key| is_given(key))
 }
 
-/// The keys of a camera that say from where it looks.
-const VIEWS: [&str; 9] = ["view", "eye", "look_at", "direction", "up", "turn", "focus_on", "camera_path", "stereo"];
+/// The keys of a camera that say in which direction it looks, and those that say where it is or what is up.
+const VIEWS: [&str; 4] = ["view", "direction", "turn", "focus_on"];
+const PLACES: [&str; 5] = ["eye", "look_at", "up", "camera_path", "stereo"];
 
 impl KindSettings {
     /// The settings for data with these traits, without those that are given: `is_given` tells for a key, or the end of
@@ -43,13 +71,27 @@ impl KindSettings {
         let mut settings = Self::default();
         settings.shapes(traits, &is_given);
         settings.colors(traits, &is_given);
-        settings.view(traits, camera, &is_given);
+        if !["eye", "camera_path"].iter().any(|key| is_given(key)) {
+            settings.focus(traits, &is_given);
+        }
+        settings.view = KindView::new(traits, camera, &is_given);
         settings
     }
 
+    /// All settings: keys of a scene file.
+    #[must_use]
+    pub fn text(&self) -> String {
+        let background = self.background.map(|color| format!("background = \"{color}\"\n"));
+        let view = self.view.as_ref().map(|KindView { camera, direction, up }| {
+            let direction = direction.map(|direction| format!("direction = {:?}, ", direction.to_array()));
+            format!("camera.{camera} = {{ {}up = {:?} }}\n", direction.unwrap_or_default(), up.to_array())
+        });
+        [self.data.clone(), background.unwrap_or_default(), view.unwrap_or_default()].concat()
+    }
+
     fn add(&mut self, text: &str) {
-        self.text += text;
-        self.text.push('\n');
+        self.data += text;
+        self.data.push('\n');
     }
 
     fn shapes(&mut self, traits: &Traits, is_given: &impl Fn(&str) -> bool) {
@@ -80,7 +122,7 @@ impl KindSettings {
         if traits.kind == Kind::Biomolecule {
             self.biomolecule(traits, is_given);
         }
-        if traits.kind == Kind::Particles && traits.has_beads {
+        if traits.kind == Kind::Particles && traits.beads_lack[1] {
             self.add(&format!("radius = {}", written(0.5 * traits.spacing)));
         }
     }
@@ -99,47 +141,59 @@ impl KindSettings {
             self.add(&format!("show = [{}]", rules.join(", ")));
         }
         if hides_water {
-            self.notes.push("water is not drawn; --show spacefill draws all");
+            let remedies = ["--show spacefill draws all", "show=\"spacefill\" draws all"];
+            self.notes.push(KindNote { what: "water is not drawn", remedies });
         }
     }
 
     fn colors(&mut self, traits: &Traits, is_given: &impl Fn(&str) -> bool) {
         if traits.kind == Kind::Stars && !is_given("background") && !is_given("color") && !is_given("color_by") {
-            self.add("background = \"black\"\ncolor = \"white\"");
+            self.background = Some("black");
+            self.add("color = \"white\"");
         }
         let are_chains = matches!(traits.kind, Kind::Biomolecule | Kind::Coarse) && traits.has_chains;
         if are_chains && !is_colored(is_given) {
             self.add("color_by = \"chain\"");
         }
-        if traits.kind == Kind::Particles && traits.has_beads && !is_colored(is_given) {
+        if traits.kind == Kind::Particles && traits.beads_lack[0] && !is_colored(is_given) {
             self.add("color_by = \"species\"");
         }
     }
 
-    fn view(&mut self, traits: &Traits, camera: Option<&str>, is_given: &impl Fn(&str) -> bool) {
-        if VIEWS.iter().any(|key| is_given(key)) {
-            return;
-        }
-        if let Some([low, high]) = traits.bulk.filter(|_| !is_given("focus")) {
-            let within = ["x", "y", "z"].iter().zip(low.to_array().into_iter().zip(high.to_array()));
-            let within: Vec<String> =
-                within.map(|(axis, (low, high))| format!("{} <= {axis} <= {}", written(low), written(high))).collect();
-            self.add(&format!("focus = \"{}\"", within.join(" and ")));
-            self.notes.push("a few spheres far away are outside of the picture; --focus all frames them, too");
-        }
-        let (from, up, usual) = match (traits.kind, traits.widest_view) {
-            (Kind::Slab, _) => ("view = \"0,8\"".to_owned(), traits.up, "orthographic"),
-            (Kind::Crystal, _) => ("view = \"15,10\"".to_owned(), traits.up, "orthographic"),
-            (Kind::Molecules | Kind::Biomolecule | Kind::Coarse, Some([eye, up])) => {
-                (format!("direction = [{}]", direction(-eye)), up, "pinhole")
+    fn focus(&mut self, traits: &Traits, is_given: &impl Fn(&str) -> bool) {
+        let Some([low, high]) = traits.bulk.filter(|_| !is_given("focus")) else { return };
+        let within = ["x", "y", "z"].iter().zip(low.to_array().into_iter().zip(high.to_array()));
+        let within: Vec<String> =
+            within.map(|(axis, (low, high))| format!("{} <= {axis} <= {}", written(low), written(high))).collect();
+        self.add(&format!("focus = \"{}\"", within.join(" and ")));
+        let remedies = ["--focus all frames them, too", "focus=\"all\" frames them, too"];
+        self.notes.push(KindNote { what: "a few spheres far away are outside of the picture", remedies });
+    }
+}
+
+impl KindView {
+    /// The usual view of data with these traits, by a camera that frames it. `camera` is its kind, if that is given.
+    fn new(traits: &Traits, camera: Option<&str>, is_given: &impl Fn(&str) -> bool) -> Option<Self> {
+        let from = |azimuth: f64, elevation: f64| Viewpoint::Angles { azimuth, elevation }.axes(traits.up, 0.0);
+        let is_placed = PLACES.iter().any(|key| is_given(key));
+        let has_view = VIEWS.iter().any(|key| is_given(key));
+        let (usual, direction, up) = match (traits.kind, traits.widest_view) {
+            _ if is_placed => return None,
+            (Kind::Slab | Kind::Crystal, _) if has_view => ("orthographic", None, traits.up),
+            (Kind::Slab, _) => ("orthographic", Some(from(0.0, 8.0)[0]), traits.up),
+            (Kind::Crystal, _) => ("orthographic", Some(from(15.0, 10.0)[0]), traits.up),
+            (Kind::Liquid | Kind::Atoms | Kind::Particles, _) if traits.has_cell => ("pinhole", None, DVec3::Z),
+            (Kind::Molecules | Kind::Biomolecule | Kind::Coarse, Some([eye, up])) if !has_view => {
+                ("pinhole", Some(-eye), up)
             }
-            _ => return,
+            _ => return None,
         };
-        let (up, kind) = (direction(up), camera.unwrap_or(usual));
-        if !["orthographic", "pinhole", "thin-lens"].contains(&kind) {
-            return;
-        }
-        self.add(&format!("camera.{kind} = {{ {from}, up = [{up}] }}"));
+        let known = keys_of("camera.orthographic");
+        let has_lens = keys_of("camera.thin-lens").iter().any(|key| !known.contains(key) && is_given(key));
+        let usual = if has_lens || is_given("stereo") { "pinhole" } else { usual };
+        let camera = camera.unwrap_or(usual).to_owned();
+        let can_frame = ["orthographic", "pinhole", "thin-lens"].contains(&camera.as_str());
+        can_frame.then(|| Self { camera, direction: direction.map(rounded), up: rounded(up) })
     }
 }
 
@@ -158,7 +212,7 @@ mod tests {
             has_chains: true,
             has_water: true,
             has_ligands: true,
-            has_beads: true,
+            beads_lack: [true; 2],
             widest_view: Some([DVec3::X, DVec3::Z]),
             bulk: Some([DVec3::splat(-1.0), DVec3::splat(2.5)]),
         }
@@ -171,7 +225,7 @@ mod tests {
                 let bulk = Some([DVec3::splat(-spacing), DVec3::new(spacing, 0.0, 1e-3 * spacing)]);
                 let traits = Traits { is_metal: spacing > 3.0, spacing, bulk, ..traits(kind) };
                 let settings = KindSettings::new(&traits, None, |_| false);
-                let text = format!("data = \"a.xyz\"\n{}", settings.text);
+                let text = format!("data = \"a.xyz\"\n{}", settings.text());
                 assert!(SceneFile::parse(&text).is_ok(), "{text}");
             }
         }
@@ -179,11 +233,16 @@ mod tests {
 
     #[test]
     fn what_is_given_stays() {
-        let all = ["box", "replicate", "bonds", "background", "color", "view", "select"];
+        let all = ["box", "replicate", "bonds", "background", "color", "view", "up", "select", "focus"];
         for kind in Kind::ALL {
-            assert_eq!(KindSettings::new(&traits(kind), None, |key| all.contains(&key)).text, "", "{kind:?}");
+            assert_eq!(KindSettings::new(&traits(kind), None, |key| all.contains(&key)).text(), "", "{kind:?}");
         }
         let slab = KindSettings::new(&traits(Kind::Slab), Some("pinhole"), |_| false);
-        assert!(slab.text.contains("camera.pinhole = { view = \"0,8\", up = [0.0, 0.6, -0.8] }"), "{}", slab.text);
+        let view = slab.view.unwrap();
+        assert_eq!((view.camera.as_str(), view.up), ("pinhole", DVec3::new(0.0, 0.6, -0.8)));
+        let above = -view.direction.unwrap().dot(view.up);
+        assert!((above - 8f64.to_radians().sin()).abs() < 1e-6, "{:?}", view.direction);
+        let turned = KindSettings::new(&traits(Kind::Slab), None, |key| key == "view").view.unwrap();
+        assert_eq!((turned.camera.as_str(), turned.direction), ("orthographic", None));
     }
 }

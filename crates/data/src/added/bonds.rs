@@ -59,6 +59,9 @@ pub enum StickSize {
     Radius(f64),
 }
 
+/// The note about metals without sticks, which who asks for bonds misses.
+pub(super) const METALS: &str = "metals are not joined; --bond-length L joins all that are closer";
+
 /// The factor by which bonded atoms are smaller than their van der Waals radius.
 const BALL: f64 = 0.25;
 
@@ -174,13 +177,13 @@ fn covalent_bonds(
     let listed = Neighbours::nearest(data, points, &data.bonds);
     let is_enough = |atoms: &Atoms<'_>| data.has_all_bonds && !atoms.are_all_known();
     let atoms = match Atoms::of(data) {
-        None if data.bonds.is_empty() => return Err(no_elements()),
+        None if data.bonds.is_empty() && !data.has_all_bonds => return Err(no_elements()),
         Some(atoms) if data.bonds.is_empty() || !is_enough(&atoms) => atoms,
         _ => return Ok(listed),
     };
     notes.extend(atoms.note());
     if atoms.are_metals() {
-        notes.push("metals are not joined; --bond-length L joins all that are closer".to_owned());
+        notes.push(METALS.to_owned());
     }
     let found = neighbours(data, points, 2.0 * factor * atoms.largest, |a, b, squared| {
         atoms.most(a, b).is_some_and(|most| squared > 0.0 && squared < (factor * most).powi(2))

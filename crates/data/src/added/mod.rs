@@ -72,9 +72,11 @@ impl Additions {
         let need_bonds = drawn.is_some_and(|drawn| drawn.need_bonds);
         if let Some(bonds) = &self.bonds {
             bonds.add(data, appearance, sticks, &mut added)?;
-        } else if need_bonds && let Err(error) = Bonds::default().add(data, appearance, sticks, &mut added) {
+        } else if need_bonds {
             // Nobody asked for bonds in so many words.
-            added.notes.push(format!("no sticks are drawn: {error}"));
+            let found = Bonds::default().add(data, appearance, sticks, &mut added);
+            added.notes.retain(|note| note != bonds::METALS);
+            added.notes.extend(found.err().map(|error| format!("no sticks are drawn: {error}")));
         }
         if let Some(edges) = &self.cell {
             edges.add(data, &mut added)?;

@@ -11,8 +11,8 @@ use super::bonds;
 use super::dataset::retain;
 use super::elements::{Appearance, UnknownSpecies, appearance};
 use super::labels::{LabelsBuilder, Memo};
-use super::{Column, ColumnValues, Dataset};
-use element::Residue;
+use super::{Column, ColumnValues, Dataset, Labels};
+use element::{Residue, unaligned};
 use pinhole::image::color::LinearRgb;
 use pinhole::internals::text::{listed, shortened};
 use pinhole::scene::sphere_array::SphereArray;
@@ -261,6 +261,25 @@ impl Atoms {
         loaded.unknown = unknown;
         loaded
     }
+}
+
+/// The elements of atoms with the columns `name` and `residue`.
+pub(super) fn species_of(columns: &[Column]) -> Option<Labels> {
+    let labels = |name: &str| {
+        columns.iter().find_map(|column| match &column.values {
+            ColumnValues::Labels(labels) if column.name == name => Some(labels),
+            _ => None,
+        })
+    };
+    let (names, residues) = (labels("name")?, labels("residue")?);
+    let kinds: Vec<Residue> = residues.names.iter().map(|name| Residue::of(name)).collect();
+    let mut species = Species::default();
+    for (name, residue) in names.indices.iter().zip(&residues.indices) {
+        let (name, index) = (names.names.get(*name as usize)?, *residue as usize);
+        let (field, symbol) = unaligned(name.as_bytes(), residues.names.get(index)?.as_bytes());
+        species.push(field, symbol, *kinds.get(index)?);
+    }
+    Some(species.labels.into_labels())
 }
 
 #[derive(Default)]

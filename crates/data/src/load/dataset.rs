@@ -34,7 +34,8 @@ pub struct Dataset {
     pub is_part_of_crystal: bool,
     /// Bonds that the file lists: pairs of indices of spheres, the smaller index first, sorted, and each pair once.
     pub bonds: Vec<[u32; 2]>,
-    /// Is true if the file lists all of its bonds, so that distances add none unless all spheres are atoms of elements.
+    /// Is true if bonds are listed and these are all there are, so that distances add none unless all spheres are atoms of
+    /// elements.
     pub has_all_bonds: bool,
     /// Number of frames in the file; `None` if the file was not read to its end.
     pub frames: Option<usize>,
@@ -163,9 +164,9 @@ impl Dataset {
         }
     }
 
-    /// Returns true if nothing gives the radii of species that are not chemical elements.
-    pub(crate) fn lacks_radii(&self) -> bool {
-        self.unknown.as_ref().is_some_and(UnknownSpecies::lack_radii)
+    /// Returns true if nothing gives the colours of species that are not chemical elements, and the same for radii.
+    pub(crate) fn unknown_lack(&self) -> [bool; 2] {
+        self.unknown.as_ref().map_or([false; 2], UnknownSpecies::lack)
     }
 
     /// Removes notes made obsolete by colours or radii from elsewhere: for all spheres, or for the species for which
@@ -183,6 +184,14 @@ impl Dataset {
             }
         }
         self.unknown = left;
+    }
+
+    /// Gives all spheres a radius, if there is one.
+    pub fn give_radius(&mut self, radius: Option<f64>) {
+        if let Some(radius) = radius {
+            self.spheres.map_radii(|_, _| radius);
+            self.correct_notes(false, true, |_| false);
+        }
     }
 
     /// Leaves out the spheres for which `is_kept` is false, with their colours, opacities, bonds and other values. Spheres

@@ -156,9 +156,9 @@ impl UnknownSpecies {
         Self::new(names, self.lacks_color && !has_colors, self.lacks_radius && !has_radii)
     }
 
-    /// Returns true if they lack a radius.
-    pub(super) fn lack_radii(&self) -> bool {
-        self.lacks_radius
+    /// Returns true for a colour, and for a radius, that they lack.
+    pub(super) fn lack(&self) -> [bool; 2] {
+        [self.lacks_color, self.lacks_radius]
     }
 
     /// The note about these species, on one line however many there are.

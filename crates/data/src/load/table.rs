@@ -313,19 +313,6 @@ pub(super) fn guessed_radius(count: usize, center: impl Fn(usize) -> DVec3, note
     digits
 }
 
-impl Dataset {
-    /// Makes spheres that all get one radius, for centres from a file without radii: half of the median distance to the
-    /// nearest neighbour, so that neighbours about touch. A note has the radius. The radii of `centers` are not used.
-    #[must_use]
-    pub fn of_centers(mut centers: SphereArray) -> Self {
-        let mut notes = Vec::new();
-        let place = |index| center(&centers, index);
-        let radius = guessed_radius(centers.len(), place, &mut notes);
-        set_radii(&mut centers, |_| radius);
-        Self { notes, ..Self::new(centers) }
-    }
-}
-
 pub(super) fn numbers_of(column: TableColumn) -> Result<Vec<f64>, LoadError> {
     match column.values {
         ColumnValues::Numbers(numbers) => Ok(numbers),

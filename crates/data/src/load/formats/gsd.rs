@@ -159,7 +159,8 @@ impl Frame<'_> {
         others.append(&mut loaded.columns);
         loaded.columns = others;
         loaded.notes.extend(notes);
-        (loaded.bonds, loaded.has_all_bonds) = (self.bonds()?, true);
+        loaded.bonds = self.bonds()?;
+        loaded.has_all_bonds = !loaded.bonds.is_empty();
         loaded.cell = self.cell()?;
         // The box of HOOMD-blue is centred at the origin.
         if let Some([a, b, c]) = loaded.cell {

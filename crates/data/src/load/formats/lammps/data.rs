@@ -128,7 +128,8 @@ pub(crate) fn read(bytes: &[u8], options: &Options) -> Result<Dataset, LoadError
         (loaded.cell, loaded.cell_origin) = (Some(cell.edges), cell.origin);
     }
     loaded.notes.extend(notes);
-    (loaded.bonds, loaded.has_all_bonds) = (bonds.unwrap_or_default(), true);
+    loaded.has_all_bonds = bonds.is_some();
+    loaded.bonds = bonds.unwrap_or_default();
     Ok(loaded)
 }
 
