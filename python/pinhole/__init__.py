@@ -8,6 +8,11 @@
 """
 
 import atexit
+import os
+
+if not os.environ.get("XDG_RUNTIME_DIR") and not os.environ.get("MESA_VK_DEVICE_SELECT"):
+    # Without a desktop session, a layer of Mesa that chooses a device would only print errors.
+    os.environ.setdefault("NODEVICE_SELECT", "1")
 
 from ._camera import Camera
 from ._certificate import Certificate

@@ -8,7 +8,7 @@ from typing import Any
 import numpy as np
 
 from ._errors import InputError
-from ._pinhole import keys_of
+from ._pinhole import check_view, keys_of
 
 
 class Camera:
@@ -33,6 +33,8 @@ class Camera:
     ) -> None:
         if view is not None and not isinstance(view, str):
             view = _angles(view)
+        if view is not None:
+            check_view(view)
         if view is not None and any(key in keys for key in ("eye", "look_at", "direction")):
             raise InputError("view and eye, look_at or direction exclude each other; remove one of them")
         if fov is not None and "vertical_fov" in keys:

@@ -9,6 +9,10 @@ class InputError(Error, ValueError):
     """An argument, a setting, an array or the content of a file is not valid."""
 
 
+class ForeignName(InputError, AttributeError):
+    """A method of another program."""
+
+
 class FileError(Error, OSError):
     """A file cannot be read or written."""
 

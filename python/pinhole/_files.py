@@ -96,6 +96,11 @@ class Trajectory(Sequence[Spheres]):
         return self[0]._repr_png_()
 
 
+def _has_places_alone(path: str | os.PathLike[str]) -> bool:
+    """Whether a file is a trajectory that needs a topology."""
+    return os.fspath(path).lower().endswith((".xtc", ".trr", ".dcd"))
+
+
 def read(
     path: str | os.PathLike[str],
     topology: str | os.PathLike[str] | None = None,
@@ -113,7 +118,7 @@ def read(
     Parameters
     ----------
     topology
-        The file that describes the spheres of a trajectory, for formats that have positions alone.
+        The file that describes the spheres of a trajectory, for formats that have positions alone. It may also come first.
     frame
         The frame of a trajectory, counted from 0.
     radius
@@ -126,6 +131,8 @@ def read(
         Settings about data, as for ``Spheres``.
     """
     checked = _settings.data_settings(settings)
+    if topology is not None and _has_places_alone(topology) and not _has_places_alone(path):
+        path, topology = topology, path
     where = None if topology is None else os.fspath(topology)
     file = FileData(os.fspath(path), format, radius, where, list(columns))
     if file.problem is not None:

@@ -125,8 +125,9 @@ def data_settings(settings: Mapping[str, Any]) -> dict[str, Any]:
     """Returns checked settings about data."""
     refuse_unknown(settings, (*DATA_KEYS, "kind"), (*PICTURE_KEYS, *SHORT, "size"), "render(...)")
     settings = {key: item for key, item in settings.items() if item is not None}
-    select = settings.get("select")
-    if select is not None and not isinstance(select, str):
+    if "select" in settings:
+        settings["select"] = selection(settings["select"])
+    if not isinstance(settings.get("select", ""), str):
         raise InputError('select is not a text; write one such as "x > 0", or leave out rows before: positions[mask]')
     if not isinstance(settings.get("kind", ""), str):
         raise InputError(f'kind is {settings["kind"]!r}; write the name of a kind, such as "crystal", or "plain"')
@@ -142,6 +143,14 @@ def data_settings(settings: Mapping[str, Any]) -> dict[str, Any]:
     return settings
 
 
+def selection(given: Any) -> Any:
+    """A selection as a text. A dict such as ``{"resn": "HEM", "chain": ["A", "B"]}`` is one, too."""
+    if not isinstance(given, Mapping):
+        return given
+    values = ((key, of if isinstance(of, (list, tuple)) else [of]) for key, of in given.items())
+    return " and ".join(f"{key} {' '.join(str(one) for one in of)}" for key, of in values)
+
+
 def show_tables(given: Any) -> list[Mapping[str, Any]]:
     """Returns rules for what is drawn as tables. A rule may be a style, or a selection, a style and perhaps a dict."""
     is_one = isinstance(given, (str, Mapping)) or (isinstance(given, tuple) and given and isinstance(given[0], str))
@@ -152,8 +161,8 @@ def show_tables(given: Any) -> list[Mapping[str, Any]]:
         elif isinstance(rule, str):
             rules.append({"as": rule})
         elif isinstance(rule, (list, tuple)) and len(rule) in (2, 3):
-            selection, style, *more = rule
-            rules.append({"select": selection, "as": style, **(more[0] if more else {})})
+            chosen, style, *more = rule
+            rules.append({"select": selection(chosen), "as": style, **(more[0] if more else {})})
         else:
             raise InputError(f"show: {rule!r} is no rule; write one such as (\"resname HEM\", \"sticks\")")
     return rules

@@ -10,7 +10,7 @@ import numpy.typing as npt
 
 from . import _arrays, _settings
 from ._camera import Camera
-from ._errors import InputError
+from ._errors import ForeignName, InputError
 from ._pinhole import SphereData, column_of, mask, of_arrays, restyled, taken
 from ._shapes import Shapes, counted, warn
 
@@ -127,7 +127,7 @@ class Spheres(Shapes):
         made._data, made._settings, made.camera = data, settings, camera
         return made
 
-    def show(self, *rule: str, **keys: Any) -> Spheres:
+    def show(self, *rule: Any, **keys: Any) -> Spheres:
         """Returns these spheres with one more rule for what is drawn.
 
         ``spheres.show("resname HEM", "sticks", carbon="orange")`` draws a selection in a style, and
@@ -138,7 +138,7 @@ class Spheres(Shapes):
             raise InputError(
                 'show(selection, style) says what is drawn, such as show("resname HEM", "sticks"); render(...) makes a picture'
             )
-        made = {"select": rule[0] if len(rule) == 2 else None, "as": rule[-1], **keys}
+        made = {"select": _settings.selection(rule[0]) if len(rule) == 2 else None, "as": rule[-1], **keys}
         return self.with_(show=[*self._settings.get("show", []), made])
 
     def with_(self, *, cmap: str | None = None, color_range: tuple[Any, Any] | None = None, **settings: Any) -> Spheres:
@@ -154,16 +154,17 @@ class Spheres(Shapes):
         warn(data.notes)
         return self._of(data, settings, self.camera)
 
-    def mask(self, selection: str) -> Array:
+    def mask(self, selection: str | Mapping[str, Any]) -> Array:
         """Whether a selection such as ``"protein and within 5 of resname HEM"`` chooses each sphere of the picture: bool, of
         shape (n,).
         """
-        chosen, notes = mask(self._data, selection)
+        chosen, notes = mask(self._data, _settings.selection(selection))
         warn(notes)
         return chosen
 
-    def select(self, selection: str) -> Spheres:
-        """The spheres that a selection chooses, such as ``"chain A"``, as spheres of their own."""
+    def select(self, selection: str | Mapping[str, Any]) -> Spheres:
+        """The spheres that a selection chooses, such as ``"chain A"`` or ``{"chain": "A"}``, as spheres of their own."""
+        selection = _settings.selection(selection)
         if self.columns or self.cell is not None:
             before = self._settings.get("select")
             return self.with_(select=selection if before is None else f"({before}) and ({selection})")
@@ -179,6 +180,11 @@ class Spheres(Shapes):
     def kind(self) -> str | None:
         """The name of the kind of data, which decides what no setting says; None for spheres with a colour for each."""
         return self._data.kind()[0]
+
+    def __getattr__(self, name: str) -> Any:
+        if name.startswith(("add_", "set_", "addStyle", "setStyle")):
+            raise ForeignName(f'Spheres has no {name}; spheres.show("resname HEM", "sticks") says what is drawn as what')
+        raise AttributeError(f"{type(self).__name__!r} object has no attribute {name!r}")
 
     def __repr__(self) -> str:
         names = self._data.column_names()
@@ -240,14 +246,21 @@ class Spheres(Shapes):
         indices = _arrays.indices(name, len(self))
         return self._made(taken(self._data, indices, _settings.data_text(rest)), rest)
 
-    def update(self, *, positions: Any = None, radius: Any = None, color: Any = None, first: int = 0) -> None:
-        """Gives spheres new centres, radii or colours in place, from the sphere ``first`` on.
+    def update(self, *, positions: Any = None, radius: Any = None, color: Any = None, first: int | None = None) -> None:
+        """Gives spheres new centres, radii or colours in place: all of them, or those from the sphere ``first`` on.
 
         ``positions`` has the shape (k, 3), ``radius`` (k,) and ``color`` (k, 3) or (k, 4) in uint8. Colours can change
         only if spheres were made with such colours. Spheres with bonds keep their places and radii. The device keeps its copy, and rebuilds only the changed parts.
         """
         centers = None if positions is None else np.ascontiguousarray(_arrays.positions("positions", positions))
-        count = len(self) - first if centers is None else len(centers)
+        count = len(self) - (first or 0) if centers is None else len(centers)
+        given = [len(array) for array in (centers, radius, color) if array is not None and np.ndim(array) > 0]
+        if first is None and any(length != len(self) for length in given):
+            raise InputError(
+                f"there are {min(given)} new values for {len(self)} spheres; first=... says which sphere is the first, "
+                "and other numbers of spheres need new Spheres(...)"
+            )
+        first = first or 0
         radii = None
         if radius is not None:
             like = np.zeros((count, 3), np.float32)

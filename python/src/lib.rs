@@ -69,6 +69,7 @@ fn _pinhole(module: &Bound<'_, PyModule>) -> PyResult<()> {
     module.add_function(wrap_pyfunction!(derived::column_of, module)?)?;
     module.add_function(wrap_pyfunction!(device::adapters, module)?)?;
     module.add_function(wrap_pyfunction!(device::use_adapter, module)?)?;
+    module.add_function(wrap_pyfunction!(spheres::check_view, module)?)?;
     module.add_function(wrap_pyfunction!(arrays::is_color_map, module)?)?;
     module.add_function(wrap_pyfunction!(arrays::srgb_of_names, module)?)?;
     module.add_function(wrap_pyfunction!(image::png_of, module)?)?;

@@ -269,9 +269,7 @@ impl SphereData {
     #[pyo3(signature = (view, turn, up))]
     fn view_axes(&self, view: Option<&str>, turn: f64, up: Option<[f64; 3]>) -> PyResult<([f64; 3], [f64; 3])> {
         let viewpoint = match view {
-            Some(name) => {
-                name.parse::<Viewpoint>().map_err(|error| Fault::Input(format!("view is {name:?}: {error}")))?
-            }
+            Some(name) => viewpoint(name)?,
             None => {
                 let flat = self.lock().subject().flat_axis();
                 flat.map_or(Viewpoint::OBLIQUE, |axis| Viewpoint::Axis { axis, is_negative: false })
@@ -384,4 +382,14 @@ impl SphereData {
             Ok(())
         })?)
     }
+}
+
+fn viewpoint(name: &str) -> Outcome<Viewpoint> {
+    name.parse().map_err(|error| Fault::Input(format!("view is {name:?}: {error}")))
+}
+
+/// Refuses a text that is not a viewpoint.
+#[pyfunction]
+pub(crate) fn check_view(view: &str) -> PyResult<()> {
+    Ok(viewpoint(view).map(drop)?)
 }

@@ -50,6 +50,9 @@ def test_selections():
     of = spheres()
     assert of.mask("kind == b and heat > 20").tolist() == ((NAMES == "b") & (SPEEDS[:, 0] > 20)).tolist()
     assert of.select("kind == b").select("heat > 20")["heat"].tolist() == [21, 27, 33, 39, 45, 51, 57]
+    names = ph.Spheres(PLACES, 0.2, columns={"resname": NAMES, "chain": ["A", "B", "C", "C"] * 5})
+    assert len(names.select({"resn": "a", "chain": ["A", "C"]})) == 10 and names.mask({"chain": "B"}).sum() == 5
+    assert not hasattr(of, "nix") and not hasattr(of, "add_licorice")
     assert len(ph.Spheres(PLACES, 0.2).select("x > 0")) == (PLACES[:, 0] > 0).sum()
 
 
@@ -82,6 +85,10 @@ def test_a_cell():
         (lambda of: ph.Spheres(PLACES, pairs=[[0, 20]]), "pairs has the index 20; there are 20 spheres"),
         (lambda of: ph.Spheres(PLACES, pairs=[0, 1]), "pairs has the shape"),
         (lambda of: spheres(color_by="heat", cmap=3), "cmap is 3"),
+        (lambda of: of.update(positions=PLACES[:10]), "there are 10 new values for 20 spheres; first="),
+        (lambda of: ph.Camera.frame("tops"), 'view is "tops": write x, -x'),
+        (lambda of: of.add_licorice("HEM"), "Spheres has no add_licorice; spheres.show"),
+        (lambda of: of.setStyle({}), "Spheres has no setStyle"),
     ],
 )
 def test_bad_input(make, words):

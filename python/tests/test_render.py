@@ -301,7 +301,7 @@ def test_updates_give_the_picture_of_new_spheres():
         spheres.update(positions=np.full((1, 3), np.nan), first=7)
     bonded = ph.Spheres([[0, 0, 0], [4, 0, 0]], 0.5, bonds={"length": 5.0})
     with pytest.raises(ph.InputError, match="these spheres have bonds, arrows or rules of show, which would not follow them"):
-        bonded.update(positions=[[0, 0, 1]])
+        bonded.update(positions=[[0, 0, 1], [0, 0, 2]])
     assert bonded.positions.shape == (2, 3) and bonded.radii.shape == (2,)
 
 

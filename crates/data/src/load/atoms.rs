@@ -90,6 +90,11 @@ impl Atoms {
         }
     }
 
+    /// The residue number of the atom that was read last.
+    pub(super) fn last_residue_number(&self) -> Option<f64> {
+        self.residue_number.last().copied()
+    }
+
     pub(super) fn is_empty(&self) -> bool {
         self.spheres.is_empty()
     }

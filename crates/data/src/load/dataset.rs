@@ -4,7 +4,7 @@ use glam::{DVec3, Vec3};
 
 use super::bonds;
 use super::elements::UnknownSpecies;
-use super::spacing;
+use super::spacing::{self, NO_RADII};
 use pinhole::image::color::LinearRgb;
 use pinhole::scene::sphere::Sphere;
 use pinhole::scene::sphere_array::SphereArray;
@@ -172,6 +172,9 @@ impl Dataset {
     /// Removes notes made obsolete by colours or radii from elsewhere: for all spheres, or for the species for which
     /// `is_given` is true.
     pub fn correct_notes(&mut self, has_colors: bool, has_radii: bool, is_given: impl Fn(&str) -> bool) {
+        if has_radii {
+            self.notes.retain(|note| !note.contains(NO_RADII));
+        }
         let Some(unknown) = self.unknown.take() else { return };
         let (former, left) = (unknown.note(), unknown.after(has_colors, has_radii, is_given));
         // A path may stand before the note.

@@ -4,6 +4,9 @@ use std::collections::HashMap;
 
 use glam::{DVec3, I64Vec3};
 
+/// The start of the note about a radius that was found here.
+pub(super) const NO_RADII: &str = "there are no radii; all spheres have the radius";
+
 /// Number of sampled spheres whose nearest neighbours are found.
 const ASKED: usize = 256;
 

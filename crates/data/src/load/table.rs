@@ -7,7 +7,7 @@ use super::dataset::{Column, ColumnValues, Dataset, Labels, center};
 use super::elements::{UnknownSpecies, appearance};
 use super::error::{LoadError, LoadErrorKind, Place};
 use super::format::Options;
-use super::spacing;
+use super::spacing::{self, NO_RADII};
 use crate::css;
 use pinhole::image::color::LinearRgb;
 use pinhole::internals::parallel;
@@ -306,9 +306,7 @@ pub(super) fn guessed_radius(count: usize, center: impl Fn(usize) -> DVec3, note
     // Three digits are enough to be pasted.
     let digits = format!("{radius:.2e}").parse().unwrap_or(radius);
     if count > 0 {
-        notes.push(format!(
-            "there are no radii; all spheres have the radius {digits}, with which neighbors about touch; --radius sets it"
-        ));
+        notes.push(format!("{NO_RADII} {digits}, with which neighbors about touch; --radius sets it"));
     }
     digits
 }

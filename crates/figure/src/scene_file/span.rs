@@ -168,7 +168,8 @@ pub(crate) fn explain(message: &str, kind: Option<&str>) -> String {
         Some(("unknown variant", rest)) => ("name", rest),
         // The camera is the only enumeration whose variants have contents.
         _ if message.starts_with("wanted exactly 1 element, more") => {
-            return "a scene has one camera; remove the other tables `[camera.…]`".to_owned();
+            return "a scene has one camera, whose keys are in one table such as `[camera.pinhole]`; remove the others"
+                .to_owned();
         }
         _ if message.starts_with("wanted exactly 1 element") || message.starts_with("invalid type: unit variant") => {
             return format!("a camera is a table; write {}", camera_tables());

@@ -149,6 +149,21 @@ fn by_id(table: &mut Table) -> Option<Vec<u32>> {
     Some(order)
 }
 
+/// A note about ids that several spheres have, which are in order.
+fn repeated_ids(table: &Table) -> Option<String> {
+    let ids = table.columns.iter().find_map(|column| match &column.values {
+        ColumnValues::Numbers(ids) if column.name == "id" => Some(ids.as_slice()),
+        _ => None,
+    })?;
+    let mut again = ids.windows(2).filter(|pair| pair[0].to_bits() == pair[1].to_bits());
+    let first = again.next()?[0];
+    let more = match again.count() {
+        0 => String::new(),
+        count => format!(", and {count} more"),
+    };
+    Some(format!("several spheres have the same id: {first}{more}; all of them are drawn"))
+}
+
 /// Returns the order if the ids are consecutive whole numbers, as they are if no atom was lost or left out.
 fn of_consecutive(ids: &[f64]) -> Option<Vec<u32>> {
     let least = ids.iter().copied().fold(f64::INFINITY, f64::min);

@@ -298,11 +298,25 @@ const NEEDED: [(&str, usize, usize); 6] = [
     ("z coordinate", 47, 54),
 ];
 
+/// The number of a residue, in hybrid-36 or, as VMD writes it after 9999, in hexadecimal digits. `before` is the number of the
+/// atom before.
+fn residue_number(text: &[u8], before: Option<f64>) -> Option<i32> {
+    let is_hexadecimal = text.len() == 4
+        && text[0].is_ascii_digit()
+        && text.iter().all(|digit| matches!(digit, b'0'..=b'9' | b'a'..=b'f'));
+    let hexadecimal = || i32::from_str_radix(std::str::from_utf8(text).ok()?, 16).ok().filter(|_| is_hexadecimal);
+    // Digits alone may be either.
+    let follows = |number: &i32| {
+        before.is_some_and(|before| before >= 9999.0 && (0.0..=1.0).contains(&(f64::from(*number) - before)))
+    };
+    hexadecimal().filter(follows).or_else(|| hybrid36(text)).or_else(hexadecimal)
+}
+
 /// Appends the atom of an ATOM or HETATM record.
 fn push(atoms: &mut Atoms, record: &Record<'_>, is_docking: bool) -> Result<(), LoadError> {
     record.must_have(&NEEDED)?;
     let text = record.text(23, 26);
-    let number = hybrid36(text).ok_or_else(|| {
+    let number = residue_number(text, atoms.last_residue_number()).ok_or_else(|| {
         let found = record::not_valid(text, "a valid residue number");
         let place = Place::Columns { line: record.line, first: 23, last: 26 };
         let message = format!(

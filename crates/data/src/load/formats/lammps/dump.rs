@@ -2,7 +2,7 @@
 
 use std::io;
 
-use super::{Cell, Shape, by_id, periodic_of, too_few_atoms, wrong_text};
+use super::{Cell, Shape, by_id, periodic_of, repeated_ids, too_few_atoms, wrong_text};
 use crate::load::dataset::{ColumnValues, Dataset};
 use crate::load::elements::appearance;
 use crate::load::error::{LoadError, LoadErrorKind};
@@ -134,6 +134,7 @@ fn read(frame: &FrameText<'_>, options: &Options) -> Result<Dataset, LoadError> 
     make_positions(&mut table, &cell);
     let is_noted = types_as_elements(&mut table);
     let order = by_id(&mut table);
+    let repeated = repeated_ids(&table);
     let line_of = |row| line + 1 + order.as_ref().map_or(row, |order| order[row] as usize);
     let columns = table.names();
     let mut loaded = rows::into_loaded(table, options, line_of).map_err(|error| match error.kind {
@@ -146,6 +147,7 @@ fn read(frame: &FrameText<'_>, options: &Options) -> Result<Dataset, LoadError> 
         _ => error,
     })?;
     (loaded.cell, loaded.cell_origin, loaded.is_periodic) = (Some(cell.edges), cell.origin, is_periodic);
+    loaded.notes.extend(repeated);
     if is_noted {
         loaded.notes.push("the types are the symbols of chemical elements, and are taken as such".to_owned());
     }
