@@ -93,11 +93,19 @@ const LEAST_RADIUS_IN_PIXELS: f64 = 3.0;
 /// The mean radius of spheres, in pixels, from which on pixels and their neighbours show most spheres that they touch.
 const LEAST_RADIUS_OF_EDGES: f64 = 2.0;
 
+/// The radius of the thinnest cylinder or cone, in pixels, below which rays in the middles of pixels may miss it.
+const LEAST_RADIUS_OF_CONES: f64 = 0.5;
+
 /// Chooses the values of a style for a scene and a view of it, except those that the scene file gives.
 pub(crate) fn fit(settings: &mut RenderSettings, style: Style, given: OwnValues, scene: &Scene, view: &View<'_>) {
     let subject = scene.subject();
     let is_smooth = |settings: &RenderSettings| settings.is_smooth(scene, view.camera);
-    let Some(radius) = subject.mean_radius() else { return fit_smooth(settings, given, None, is_smooth) };
+    let widths = scene.cones().iter().map(|cone| cone.first_radius.abs().max(cone.second_radius.abs()));
+    let thinnest = widths
+        .reduce(f32::min)
+        .and_then(|radius| radius_in_pixels(view, scene.bounds_to_frame().center(), radius.into()));
+    let are_thin = thinnest.is_some_and(|radius| radius < LEAST_RADIUS_OF_CONES);
+    let Some(radius) = subject.mean_radius() else { return fit_smooth(settings, given, are_thin, is_smooth) };
     if let Integrator::Studio(studio) = &mut settings.integrator {
         fit_occlusion(studio, given, &subject, radius);
         fit_outline(studio, style, given, &subject, radius, view);
@@ -106,15 +114,16 @@ pub(crate) fn fit(settings: &mut RenderSettings, style: Style, given: OwnValues,
         settings.ground = fit_ground(ground, &subject, view.camera);
     }
     let pixels = radius_in_pixels(view, subject.bounds().center(), radius);
-    fit_smooth(settings, given, pixels, is_smooth);
+    let is_small = are_thin || pixels.is_some_and(|radius| radius < LEAST_RADIUS_OF_EDGES);
+    fit_smooth(settings, given, is_small, is_smooth);
 }
 
 /// Nothing is random, and no noise is removed, if the picture allows it, unless a number of random rays is asked for. All
-/// pixels have several rays if spheres are small.
+/// pixels have several rays if spheres are small, or cylinders thin.
 fn fit_smooth(
     settings: &mut RenderSettings,
     given: OwnValues,
-    radius_in_pixels: Option<f64>,
+    is_small: bool,
     is_smooth: impl Fn(&RenderSettings) -> bool,
 ) {
     if !settings.studio_parameters().is_some_and(|studio| studio.is_smooth) {
@@ -126,7 +135,6 @@ fn fit_smooth(
     let is_smooth = !is_refused && is_smooth(settings);
     let Integrator::Studio(studio) = &mut settings.integrator else { return };
     if is_smooth {
-        let is_small = radius_in_pixels.is_some_and(|radius| radius < LEAST_RADIUS_OF_EDGES);
         studio.is_dense = if given.dense { studio.is_dense } else { is_small };
     } else {
         settings.sampling.denoise = denoise;
