@@ -15,7 +15,8 @@ class Camera:
     """A camera. Lengths are in scene units, and angles in degrees.
 
     ``Camera.look_at`` places a camera, and ``Camera.frame`` lets it frame all spheres. ``kind`` is ``"pinhole"``,
-    ``"orthographic"``, ``"thin-lens"``, ``"panorama"`` or ``"fisheye"``, by default that of the kind of data; further keywords are the keys of the scene file's
+    ``"orthographic"``, ``"thin-lens"``, ``"panorama"`` or ``"fisheye"``, by default that of the kind of data;
+    further keywords are the keys of the scene file's
     table ``[camera.KIND]``, such as ``aperture_radius``, ``focus_on``, ``half_extent`` or ``stereo``.
     """
 

@@ -11,7 +11,7 @@ use crate::worker;
 use pinhole::scene::Colors;
 use pinhole::{Scene, SphereArray};
 use pinhole_data::column;
-use pinhole_data::load::{ColumnValues, Dataset, Labels};
+use pinhole_data::load::{Column, ColumnValues, Dataset, Labels};
 use pinhole_data::select::Selection;
 
 /// The data of the spheres of a picture, in their order, or of those with these indices.
@@ -19,7 +19,10 @@ fn shown(of: &SphereData, indices: Option<&[u32]>) -> Outcome<Dataset> {
     let scene = of.scene();
     let Some(loaded) = &of.loaded else {
         let all = of_scene(&scene, of.is_colored);
-        return Ok(indices.map_or_else(|| all.clone(), |indices| all.clone().taken(indices)));
+        return Ok(match indices {
+            Some(indices) => all.taken(indices),
+            None => all,
+        });
     };
     if of.is_updated() {
         return Err(Fault::Input("these spheres were updated; make new Spheres(...) of a part".to_owned()));
@@ -28,24 +31,24 @@ fn shown(of: &SphereData, indices: Option<&[u32]>) -> Outcome<Dataset> {
     if let Some(replicate) = of.replicate {
         replicate.apply(&mut data).map_err(Fault::input)?;
     }
-    // The spheres that are shown are numbered if others are not.
-    let former = of.shown.iter().flatten().find(|column| column.name == "index").map(|column| &column.values);
-    let former = match former {
-        Some(ColumnValues::Numbers(numbers)) if numbers.len() != data.spheres.len() => Some(numbers),
-        _ => None,
-    };
-    let count = scene.len() - scene.added();
-    let usual: Vec<u32> = (0..count as u32).collect();
-    let asked = indices.unwrap_or(&usual);
-    let former_of =
-        |index: &u32| former.map_or(Some(*index), |all| all.get(*index as usize).map(|former| *former as u32));
-    let mapped: Vec<u32> = asked.iter().filter_map(former_of).collect();
-    if former.is_none() && count != data.spheres.len() {
-        return Err(Fault::Input(
-            "the column `index` has other numbers than those of the spheres; rename it".to_owned(),
-        ));
+    if of.count() == data.spheres.len() {
+        return Ok(match indices {
+            Some(indices) => data.taken(indices),
+            None => data,
+        });
     }
-    Ok(data.taken(&mapped))
+    // Spheres of which others are left out are numbered, unless the data has such a column itself.
+    let is_index = |column: &&Column| column.name.eq_ignore_ascii_case("index");
+    if data.columns.iter().any(|column| is_index(&column)) {
+        let message = "the column `index` has other numbers than those of the spheres; rename it";
+        return Err(Fault::Input(message.to_owned()));
+    }
+    let former = match of.columns().iter().find(is_index).map(|column| &column.values) {
+        Some(ColumnValues::Numbers(numbers)) => numbers.iter().map(|former| *former as u32).collect(),
+        _ => Vec::new(),
+    };
+    let asked = |indices: &[u32]| indices.iter().filter_map(|index| former.get(*index as usize).copied()).collect();
+    Ok(data.taken(&indices.map_or(former.clone(), asked)))
 }
 
 /// The spheres of a scene as data.

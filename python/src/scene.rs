@@ -2,7 +2,7 @@
 
 use crate::fault::{Fault, Outcome};
 use crate::look::SceneText;
-use pinhole_data::kind::{Kind, Traits};
+use pinhole_data::kind::Traits;
 use pinhole_data::load::Dataset;
 use pinhole_figure::color_by::JoinedKeys;
 use pinhole_figure::kind::KindSettings;
@@ -28,14 +28,9 @@ pub(crate) fn kind_of(loaded: &Dataset, text: &SceneText, given: &DataExtras) ->
     let traits = match given.traits.clone() {
         Some(traits) => traits,
         None => {
-            let select = text.parse()?.data().and_then(|data| data.select.clone());
-            let part = select.filter(|_| text.kind() != Some(Kind::Plain)).map(|select| {
-                let mut part = loaded.clone();
-                // An error shows when the scene is made.
-                drop(select.apply(&mut part));
-                part
-            });
-            Traits::of(part.as_ref().unwrap_or(loaded), text.kind())
+            let file = text.parse()?;
+            let select = file.data().and_then(|data| data.select.as_ref());
+            Traits::of(loaded, select, text.kind())
         }
     };
     let settings = text.of_kind(&traits, |key| match key {

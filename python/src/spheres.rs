@@ -28,7 +28,7 @@ use pinhole_data::replicate::Replicate;
 use pinhole_figure::color_by::ColorKey;
 use pinhole_figure::framing::swept;
 use pinhole_figure::kind::{KindSettings, KindView};
-use pinhole_figure::scene_file::DataScene;
+use pinhole_figure::scene_file::{Data, DataScene};
 
 /// Spheres: arrays or a file, and the settings that concern data.
 #[pyclass(frozen, module = "pinhole._pinhole")]
@@ -73,7 +73,6 @@ impl SphereData {
         let found = given.colors.is_none().then(|| kind_of(&loaded, text, &given)).transpose()?;
         let (traits, kind) = found.map_or_else(Default::default, |(traits, kind)| (Some(traits), kind));
         let text = &text.with_kind(&kind);
-        let count = loaded.spheres.len();
         let (scene, columns, key, arrow_key, mut notes, bonds) = match given.colors {
             // Such colours need no list of distinct colours, which takes long to make.
             Some(colors) => {
@@ -91,7 +90,8 @@ impl SphereData {
         let file = text.parse()?;
         let has_rules = file.data().is_some_and(|data| !data.shows.is_empty());
         let replicate = file.data().and_then(|data| data.replicate);
-        let shown = (scene.len() - scene.added() != count).then_some(columns);
+        let is_part = |data: &Data| data.select.is_some() || data.replicate.is_some() || !data.leave_out.is_empty();
+        let shown = (has_rules || file.data().is_some_and(is_part)).then_some(columns);
         let has_sticks = bonds.is_some_and(|bonds| bonds > 0) || arrow_key.is_some() || has_rules;
         Ok(Self {
             key,

@@ -36,6 +36,15 @@ def test_parts_by_masks_slices_and_indices():
         wanted = np.atleast_2d(PLACES[index]).reshape(-1, 3)
         assert np.allclose(part.positions, wanted) and np.array_equal(part["v"], np.atleast_2d(SPEEDS[index]).reshape(-1, 3))
     assert of[NAMES == "b"].color_key["range"] == (3.0, 57.0)
+    water = ph.Spheres(PLACES, 0.1, columns={"resname": ["HOH", "ALA"] * 10, "n": range(20)}, show=[("water", "hidden")])
+    assert water["n"].tolist() == list(range(1, 20, 2)) and water[1:3]["n"].tolist() == [3, 5]
+    assert len(water.select("water").with_(show="spacefill")) == 10
+    numbered = ph.Spheres(PLACES, 0.1, columns={"index": range(5, 25)}, select="index > 9")
+    assert numbered["index"].tolist() == list(range(10, 25))
+    with pytest.raises(ph.InputError, match="the column `index` has other numbers"):
+        numbered[:2]
+    cell = ph.Spheres(PLACES, 0.1, cell=(9, 9, 9), replicate="2x1x1", select="x > 4.5", columns={"n": range(20)}, kind="plain")
+    assert np.allclose(cell[:3].positions, cell.positions[:3]) and cell[:3]["n"].tolist() == cell["n"][:3].tolist()
     twice = spheres(select="kind == a")[2:][::-1]
     assert twice["heat"].tolist() == SPEEDS[::2, 0][2:][::-1].tolist()
     assert len(spheres()[[]]) == 0 and len(spheres()[np.zeros(20, bool)]) == 0

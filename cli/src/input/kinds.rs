@@ -41,13 +41,7 @@ impl Chosen {
     /// anywhere, so that all of them are framed.
     pub(crate) fn of(data: &Dataset, select: Option<&Selection>, given: &Given, is_movie: bool) -> Self {
         let named = given.get("kind").and_then(Kind::of_name);
-        let part = select.filter(|_| named != Some(Kind::Plain)).map(|select| {
-            let mut part = data.clone();
-            // An error shows when the scene is made.
-            drop(select.apply(&mut part));
-            part
-        });
-        let mut traits = Traits::of(part.as_ref().unwrap_or(data), named);
+        let mut traits = Traits::of(data, select, named);
         traits.bulk = traits.bulk.filter(|_| !is_movie);
         let settings = KindSettings::new(&traits, given.get("camera"), |key| match key {
             // What is hidden or faint is so in what the kind draws.

@@ -150,11 +150,18 @@ impl Traits {
         }
     }
 
-    /// Finds the traits of data, and its kind unless one is asked for. Data that shall be plain is not looked at.
+    /// Finds the traits of data, or of the part that is selected, and its kind unless one is asked for. Data that shall be plain
+    /// is not looked at.
     #[must_use]
-    pub fn of(data: &Dataset, asked: Option<Kind>) -> Self {
+    pub fn of(data: &Dataset, select: Option<&Selection>, asked: Option<Kind>) -> Self {
         if asked == Some(Kind::Plain) {
             return Self::plain();
+        }
+        if let Some(select) = select {
+            let mut part = data.clone();
+            // An error shows when the scene is made.
+            drop(select.apply(&mut part));
+            return Self::of(&part, None, asked);
         }
         let count = data.spheres.len();
         let species = data.labels("species");
@@ -319,7 +326,7 @@ mod tests {
     use crate::load::{self, Options};
 
     fn traits(name: &str, text: &str) -> Traits {
-        Traits::of(&load::from_bytes(text.as_bytes(), name, &Options::default()).unwrap(), None)
+        Traits::of(&load::from_bytes(text.as_bytes(), name, &Options::default()).unwrap(), None, None)
     }
 
     fn kind(name: &str, text: &str) -> Kind {
