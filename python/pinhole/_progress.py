@@ -37,7 +37,7 @@ class Line:
         from IPython.display import display
 
         if self.output is None:
-            self.output = display({"text/plain": text}, raw=True, display_id=True)
+            self.output = display({"text/plain": text}, raw=True, display_id=True)  # type: ignore[no-untyped-call, unused-ignore]
         else:
             self.output.update({"text/plain": text}, raw=True)
 
