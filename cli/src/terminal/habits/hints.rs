@@ -14,7 +14,7 @@ pub(super) enum Hint {
 /// Flags of other programs, and words that say what to type.
 const SAID: &[(&[&str], &str)] = &[
     (
-        &["rotate", "azimuth", "elevation", "rot"],
+        &["rotate", "rotation", "azimuth", "elevation", "rot"],
         "--view AZIMUTH,ELEVATION in degrees says from where, such as --view 30,20",
     ),
     (&["quality"], "--samples N takes more rays for each pixel, and --style chooses how light is computed"),
@@ -25,6 +25,20 @@ const SAID: &[(&[&str], &str)] = &[
     (&["crop", "trim", "autocrop"], "--margin 0 leaves no space around; --focus EXPRESSION frames a part"),
     (&["wrap", "unwrap"], "positions are drawn as they are in the file; --replicate faces moves them into the cell"),
     (&["point-size", "point-radius"], "--radius sets the radius of all spheres, and --radius-scale a factor"),
+    (
+        &["chain", "resname", "residue", "resid", "element", "segid", "atoms"],
+        "--select EXPRESSION keeps a part, such as --select 'chain A and resname HEM'",
+    ),
+    (
+        &["representation", "rep", "draw-style", "drawing-method"],
+        "--show STYLE says how spheres are drawn, such as --show sticks; --show 'SELECTION = STYLE' a part",
+    ),
+    (&["polyhedra", "isosurface", "mesh"], "only spheres, cylinders and cones are drawn; --show balls joins neighbors"),
+    (
+        &["labels", "label-atoms", "atom-labels"],
+        "--label TEXT writes a text; [[labels]] in a scene file also says where",
+    ),
+    (&["hydrogens"], "--hide hydrogen leaves them out; they are drawn otherwise"),
     (&["color-scheme", "coloring"], "--color-by COLUMN colors by a column, such as chain or element"),
 ];
 

@@ -23,7 +23,9 @@ mod hints;
 
 /// Other names of flags.
 const SAME: &[(&str, &str)] = &[
+    ("alpha", "opacity"),
     ("bg", "background"),
+    ("cell", "box"),
     ("colorbar", "legend"),
     ("center", "focus"),
     ("centre", "focus"),
@@ -31,9 +33,11 @@ const SAME: &[(&str, &str)] = &[
     ("colour-by", "color-by"),
     ("only", "select"),
     ("out", "output"),
+    ("repeat", "replicate"),
     ("resolution", "size"),
     ("scale", "radius-scale"),
     ("supercell", "replicate"),
+    ("unit-cell", "box"),
 ];
 
 /// Flags that are short for a value of another one.
@@ -140,6 +144,7 @@ impl Reader<'_> {
             }
             match word.to_str() {
                 Some(text) if text.len() > 2 && text.starts_with("--") => self.flag(&text[2..])?,
+                Some("-s") if self.find("size").is_some() => self.flag("size")?,
                 _ => self.other(word),
             }
         }
@@ -244,6 +249,11 @@ impl Reader<'_> {
         let text = self.joined(name, text);
         if SELECTIONS.contains(&name) {
             self.check_quotes(name, &text)?;
+        }
+        if ["color", "radius"].contains(&name) && text.contains('=') {
+            return Err(Failure::usage(format!(
+                "--{name} {text}: this is one {name} for all; for each kind: --set 'elements.NAME.{name}=VALUE'"
+            )));
         }
         if is_doubtful {
             self.doubtful.push(self.plain.len());

@@ -69,6 +69,8 @@ fn other_names_have_the_meaning_of_flags() {
         ("a.xyz --every 5", "a.xyz --frames=::5"),
         ("a.xyz --every 5 --frames 10:90", "a.xyz --frames=10:90:5"),
         ("a.xyz --width 900", "a.xyz --size=900"),
+        ("a.xyz -s 400x300 --repeat 2 2 1", "a.xyz --size=400x300 --replicate=2,2,1"),
+        ("a.xyz --unit-cell --alpha 0.5", "a.xyz --box --opacity=0.5"),
         ("a.xyz --height 600", "a.xyz --size=800x600"),
         ("a.gro --zoom 2 a.xtc", "--topology=a.gro --zoom=2 a.xtc"),
         ("a.dcd a.pdb", "a.dcd --topology=a.pdb"),
@@ -94,6 +96,11 @@ fn words_without_a_meaning_are_refused() {
         ("--slice z", "--slice z: write AXIS=LOW:HIGH, such as z=3:9, which keeps whole spheres"),
         ("--height x", "--height x: write a whole number"),
         ("--every", "--every needs a value"),
+        (
+            "--color A=red,B=blue",
+            "--color A=red,B=blue: this is one color for all; for each kind: --set 'elements.NAME.color=VALUE'",
+        ),
+        ("--chain A", "--chain: --select EXPRESSION keeps a part, such as --select 'chain A and resname HEM'"),
     ] {
         assert_eq!(plain(&format!("render Cargo.toml {line}")), Err(words.to_owned()), "{line}");
     }
