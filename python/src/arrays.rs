@@ -154,7 +154,7 @@ pub(crate) fn srgb_of_names(names: Vec<String>) -> Option<Vec<u8>> {
     colors.collect::<Option<Vec<_>>>().map(|colors| colors.into_flattened())
 }
 
-/// Whether there is a colour map of this name.
+/// Returns true if there is a colour map of this name.
 #[pyfunction]
 pub(crate) fn is_color_map(name: &str) -> bool {
     name.parse::<MapName>().is_ok()

@@ -1,4 +1,4 @@
-//! What is found in spheres: their columns, a part of them, and the same with other settings.
+//! Columns and parts of spheres, and the same data with other settings.
 
 use numpy::{IntoPyArray as _, PyArray1, PyArrayMethods as _, PyReadonlyArray1};
 use pyo3::prelude::*;

@@ -47,7 +47,7 @@ pub(crate) struct SphereData {
     /// The traits by which its kind was chosen, and the settings that follow.
     pub(crate) traits: Option<Traits>,
     kind: KindSettings,
-    /// Whether the caller gave radii, and a colour to each sphere.
+    /// Is true if the caller gave radii, and the next if a colour to each sphere.
     pub(crate) has_radii: bool,
     pub(crate) is_colored: bool,
     /// Whether there are bonds, arrows or rules for what is drawn, which do not follow spheres that move.

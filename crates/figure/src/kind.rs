@@ -33,7 +33,7 @@ pub struct KindView {
 /// A note about what a kind leaves out.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct KindNote {
-    /// What is left out.
+    /// The part that is left out.
     pub what: &'static str,
     /// How to change that by flags, and by keys.
     pub remedies: [&'static str; 2],

@@ -19,7 +19,7 @@ pub use shapes::{AddError, AddedShapes, ArrowKey};
 
 use glam::DVec3;
 
-use crate::load::{Column, ColumnValues, Dataset, covalent};
+use crate::load::{Column, Dataset, covalent, labels_in};
 use pinhole::scene::Appearance;
 use shapes::{Look, between};
 
@@ -101,10 +101,7 @@ pub struct DrawnSpheres {
 
 /// Tells which spheres are atoms of a chemical element.
 pub(crate) fn element_test(columns: &[Column]) -> impl Fn(usize) -> bool {
-    let labels = columns.iter().find_map(|column| match &column.values {
-        ColumnValues::Labels(labels) if column.name == "species" => Some(labels),
-        _ => None,
-    });
+    let labels = labels_in(columns, "species");
     let are_elements: Vec<bool> =
         labels.map(|labels| labels.names.iter().map(|name| covalent(name).is_some()).collect()).unwrap_or_default();
     let indices = labels.map_or(&[][..], |labels| &labels.indices);

@@ -2,6 +2,7 @@
 
 use super::atoms::species_of;
 use super::bonds;
+use super::dataset::labels_in;
 use super::table::{Table, TableColumn, is_element};
 use super::{Column, ColumnValues, Dataset, LoadError, Options};
 use pinhole::image::color::LinearRgb;
@@ -29,11 +30,7 @@ impl Dataset {
                 columns.extend(found.map(|values| Column { name: "species".to_owned(), values }));
             }
         }
-        let species = columns.iter().find_map(|column| match &column.values {
-            ColumnValues::Labels(labels) if column.name == "species" => Some(labels.clone()),
-            _ => None,
-        });
-        let species = species.map(|labels| TableColumn::labels("species", labels));
+        let species = labels_in(&columns, "species").map(|labels| TableColumn::labels("species", labels.clone()));
         let table = Table { columns: species.into_iter().collect() };
         let mut loaded = table.dress(spheres, have_radii, &Options::default())?;
         loaded.correct_notes(colors.is_some(), false, |_| false);

@@ -8,7 +8,7 @@ pub(super) use links::AtomKey;
 use std::collections::{HashMap, HashSet};
 
 use super::bonds;
-use super::dataset::retain;
+use super::dataset::{labels_in, retain};
 use super::elements::{Appearance, UnknownSpecies, appearance};
 use super::labels::{LabelsBuilder, Memo};
 use super::{Column, ColumnValues, Dataset, Labels};
@@ -270,13 +270,7 @@ impl Atoms {
 
 /// The elements of atoms with the columns `name` and `residue`.
 pub(super) fn species_of(columns: &[Column]) -> Option<Labels> {
-    let labels = |name: &str| {
-        columns.iter().find_map(|column| match &column.values {
-            ColumnValues::Labels(labels) if column.name == name => Some(labels),
-            _ => None,
-        })
-    };
-    let (names, residues) = (labels("name")?, labels("residue")?);
+    let (names, residues) = (labels_in(columns, "name")?, labels_in(columns, "residue")?);
     let kinds: Vec<Residue> = residues.names.iter().map(|name| Residue::of(name)).collect();
     let mut species = Species::default();
     for (name, residue) in names.indices.iter().zip(&residues.indices) {

@@ -108,6 +108,14 @@ fn taken<T: Copy>(values: &[T], indices: &[u32]) -> Vec<T> {
     indices.iter().filter_map(|index| values.get(*index as usize).copied()).collect()
 }
 
+/// The column with this name, if its values are text.
+pub(crate) fn labels_in<'a>(columns: &'a [Column], name: &str) -> Option<&'a Labels> {
+    match &columns.iter().find(|column| column.name == name)?.values {
+        ColumnValues::Labels(labels) => Some(labels),
+        ColumnValues::Numbers(_) => None,
+    }
+}
+
 /// The centre of a sphere.
 pub(super) fn center(spheres: &SphereArray, index: usize) -> DVec3 {
     let [x, y, z, _] = spheres.at(index);
@@ -158,10 +166,7 @@ impl Dataset {
     /// Returns the column with this name, if its values are text.
     #[must_use]
     pub fn labels(&self, name: &str) -> Option<&Labels> {
-        match self.column(name)? {
-            ColumnValues::Labels(labels) => Some(labels),
-            ColumnValues::Numbers(_) => None,
-        }
+        labels_in(&self.columns, name)
     }
 
     /// Returns true if nothing gives the colours of species that are not chemical elements, and the same for radii.

@@ -39,6 +39,7 @@ pub(crate) use atoms::element::Residue;
 pub use compressed::{is_compressed, without_ending};
 pub use cone_kind::ConeKind;
 pub use cones::ConeSet;
+pub(crate) use dataset::labels_in;
 pub use dataset::{Column, ColumnValues, Dataset, Labels};
 pub(crate) use elements::{Covalent, Family, covalent, element_symbol, is_metal};
 pub use error::{LoadError, LoadErrorKind, Place};

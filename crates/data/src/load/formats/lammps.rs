@@ -127,10 +127,7 @@ fn periodic_of(item: &str) -> [bool; 3] {
 /// Sorts the rows by the column `id`, if there is one. Returns the former index of each row; `None` if the rows were
 /// in order.
 fn by_id(table: &mut Table) -> Option<Vec<u32>> {
-    let ids = table.columns.iter().find_map(|column| match &column.values {
-        ColumnValues::Numbers(ids) if column.name == "id" => Some(ids.as_slice()),
-        _ => None,
-    })?;
+    let ids = numbers(table, "id")?;
     if ids.is_sorted() {
         return None;
     }
@@ -149,12 +146,17 @@ fn by_id(table: &mut Table) -> Option<Vec<u32>> {
     Some(order)
 }
 
+fn numbers<'a>(table: &'a Table, name: &str) -> Option<&'a [f64]> {
+    let column = table.columns.iter().find(|column| column.name == name)?;
+    match &column.values {
+        ColumnValues::Numbers(numbers) => Some(numbers),
+        ColumnValues::Labels(_) => None,
+    }
+}
+
 /// A note about ids that several spheres have, which are in order.
 fn repeated_ids(table: &Table) -> Option<String> {
-    let ids = table.columns.iter().find_map(|column| match &column.values {
-        ColumnValues::Numbers(ids) if column.name == "id" => Some(ids.as_slice()),
-        _ => None,
-    })?;
+    let ids = numbers(table, "id")?;
     let mut again = ids.windows(2).filter(|pair| pair[0].to_bits() == pair[1].to_bits());
     let first = again.next()?[0];
     let more = match again.count() {

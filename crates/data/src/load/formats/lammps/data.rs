@@ -4,9 +4,9 @@
 use std::collections::HashMap;
 
 use super::types::{Types, name_types};
-use super::{Cell, by_id, too_few_atoms, wrong_text};
+use super::{Cell, by_id, numbers, too_few_atoms, wrong_text};
 use crate::load::bonds::{Numbered, ordered};
-use crate::load::dataset::{ColumnValues, Dataset};
+use crate::load::dataset::Dataset;
 use crate::load::error::LoadError;
 use crate::load::format::Options;
 use crate::load::numbers::number;
@@ -131,14 +131,6 @@ pub(crate) fn read(bytes: &[u8], options: &Options) -> Result<Dataset, LoadError
     loaded.has_all_bonds = bonds.is_some();
     loaded.bonds = bonds.unwrap_or_default();
     Ok(loaded)
-}
-
-fn numbers<'a>(table: &'a Table, name: &str) -> Option<&'a [f64]> {
-    let column = table.columns.iter().find(|column| column.name == name)?;
-    match &column.values {
-        ColumnValues::Numbers(numbers) => Some(numbers),
-        ColumnValues::Labels(_) => None,
-    }
 }
 
 /// Reads bonds, which have an id, a type and the ids of two atoms.
