@@ -101,8 +101,21 @@ def _has_places_alone(path: str | os.PathLike[str]) -> bool:
     return os.fspath(path).lower().endswith((".xtc", ".trr", ".dcd"))
 
 
+def _name_of(path: str | os.PathLike[str] | Sequence[str | os.PathLike[str]]) -> str:
+    """The name of a file, or the one that stands for several."""
+    if isinstance(path, (str, os.PathLike)):
+        return os.fspath(path)
+    paths = [os.fspath(one) for one in path]
+    if len(paths) == 1:
+        return paths[0]
+    name = FileData.name_of(paths)
+    if name is None:
+        raise InputError("path: several files are frames if their names differ in one number alone; read others one by one")
+    return name
+
+
 def read(
-    path: str | os.PathLike[str],
+    path: str | os.PathLike[str] | Sequence[str | os.PathLike[str]],
     topology: str | os.PathLike[str] | None = None,
     *,
     frame: int | None = None,
@@ -113,14 +126,16 @@ def read(
 ) -> Any:
     """Reads a file of spheres: PDB, mmCIF, XYZ, LAMMPS, GSD, GROMACS, DCD, PLY, VTK, LAS, CSV, NumPy and more.
 
-    Returns ``Spheres``, or a ``Trajectory`` if the file has several frames and ``frame`` is None.
+    Returns ``Spheres``, or a ``Trajectory`` if there are several frames and ``frame`` is None.
 
     Parameters
     ----------
+    path
+        The file. Several files are frames, in the order of the numbers in which their names differ: ``"dump.*"``, or a list.
     topology
         The file that describes the spheres of a trajectory, for formats that have positions alone. It may also come first.
     frame
-        The frame of a trajectory, counted from 0.
+        The frame of a trajectory, counted from 0; -1 is the last.
     radius
         The radius of all spheres, for files without radii.
     format
@@ -131,15 +146,16 @@ def read(
         Settings about data, as for ``Spheres``.
     """
     checked = _settings.data_settings(settings)
-    if topology is not None and _has_places_alone(topology) and not _has_places_alone(path):
-        path, topology = topology, path
+    name = _name_of(path)
     where = None if topology is None else os.fspath(topology)
-    file = FileData(os.fspath(path), format, radius, where, list(columns))
+    if where is not None and _has_places_alone(where) and not _has_places_alone(name):
+        name, where = where, name
+    file = FileData(name, format, radius, where, list(columns))
     if file.problem is not None:
-        warn([f"{os.fspath(path)}: after the {len(file)} complete frames: {file.problem}"])
+        warn([f"{name}: after the {len(file)} complete frames: {file.problem}"])
     frames = Trajectory(file, range(len(file)), checked)
     if frame is not None:
-        if not 0 <= frame < len(file):
-            raise InputError(f"{os.fspath(path)}: there is no frame {frame}; the file has {len(file)}, counted from 0")
+        if not -len(file) <= frame < len(file):
+            raise InputError(f"{name}: there is no frame {frame}; the file has {len(file)}, counted from 0")
         return frames[frame]
     return frames[0] if len(file) == 1 else frames

@@ -11,7 +11,7 @@ use crate::scene::DataExtras;
 use crate::spheres::SphereData;
 use crate::worker;
 use pinhole_data::kind::Traits;
-use pinhole_data::load::{self, Dataset, Format, LoadError, Options, Trajectory};
+use pinhole_data::load::{self, Dataset, FileSet, Format, LoadError, Options, Trajectory};
 use pinhole_figure::color_by::JoinedKeys;
 use pinhole_figure::framing::Union;
 
@@ -42,16 +42,24 @@ impl FileData {
         columns: Vec<String>,
     ) -> PyResult<Self> {
         Ok(worker::run(py, None, move |_| {
+            FileSet::of(path.as_ref()).map_err(|error| Fault::reading(&path, &error))?;
             let format = format_of(&path, format.as_deref())?;
             let mut options = Options::default().with_format(format).with_columns(columns);
             (options.radius, options.topology) = (radius, topology);
             format.check(&options).map_err(Fault::input)?;
             let fault = |error: LoadError| Fault::reading(&path, &error);
-            let found = format.has_frames().then(|| Trajectory::open(&path, &options)).transpose().map_err(fault)?;
+            let has_frames = format.has_frames() || FileSet::is_one(path.as_ref());
+            let found = has_frames.then(|| Trajectory::open(&path, &options)).transpose().map_err(fault)?;
             let count = found.as_ref().map_or(1, Trajectory::len);
             let problem = found.as_ref().and_then(Trajectory::problem).map(ToString::to_string);
             Ok(Self { path, format, options, frames: found.map(Mutex::new), count, problem })
         })?)
+    }
+
+    /// The name for several files whose names differ in a number.
+    #[staticmethod]
+    fn name_of(paths: Vec<PathBuf>) -> Option<String> {
+        FileSet::name_of(&paths).map(|name| name.to_string_lossy().into_owned())
     }
 
     /// The number of complete frames.

@@ -1,5 +1,6 @@
 //! `pinhole render`: renders a scene file or a data file.
 
+use std::ffi::OsStr;
 use std::path::{Path, PathBuf};
 use std::time::Instant;
 
@@ -20,7 +21,7 @@ use crate::terminal::profile;
 use crate::terminal::progress::{self, answer, tell};
 use crate::terminal::threads;
 use pinhole::image::LayerSet;
-use pinhole_data::load::without_ending;
+use pinhole_data::load::{FileSet, without_ending};
 
 /// Renders into the file that the flags name, or else into one with the name of the input.
 pub(crate) fn run_named(mut args: RenderArgs) -> Result<(), Failure> {
@@ -45,10 +46,15 @@ fn default_output(args: &RenderArgs) -> Result<PathBuf, Failure> {
     }
     let plain = without_ending(input);
     let name = plain.file_stem().filter(|_| !is_standard_input(input));
+    let of_set = name.and_then(OsStr::to_str).filter(|_| FileSet::is_one(input));
+    // The numbers of several files are left out.
+    let of_set = of_set.and_then(|name| name.split(['*', '{']).next());
+    let of_set = of_set.map(|name| name.trim_end_matches(['.', '-', '_'])).map(OsStr::new);
+    let name = of_set.or(name).filter(|name| !name.is_empty());
     let mut path = name.ok_or_else(|| no_name("the picture needs a name; add -o OUT.png"))?.to_os_string();
     path.push(".png");
     let path = PathBuf::from(path);
-    if path.exists() && input.exists() {
+    if path.exists() && (input.exists() || FileSet::is_one(input)) {
         let path = path.display();
         return Err(Failure::usage(format!("{path}: this file exists; add -o {path} to replace it, or -o OTHER.png")));
     }

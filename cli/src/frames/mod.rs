@@ -50,13 +50,7 @@ impl SeriesRequest {
         let name = output.display().to_string();
         let movie = target::movie_of(output);
         let is_asked = frames.is_some() || turntable.is_some() || path.is_some();
-        if !is_asked && movie.is_none() && raw.is_none() {
-            if args::has_sign(output) {
-                return Err(Failure::usage(format!(
-                    "{name}: a % stands for the number of a frame; add --frames RANGE (: for all) or --turntable N, or \
-                     choose a name without %"
-                )));
-            }
+        if !is_asked && movie.is_none() && raw.is_none() && !args::has_sign(output) {
             let given = [("--camera-from", camera_from.is_some()), ("--fps", fps.is_some()), ("--resume", resume)];
             return match given.into_iter().find(|(_, is_given)| *is_given) {
                 Some((flag, _)) => Err(Failure::usage(format!(

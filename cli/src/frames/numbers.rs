@@ -112,7 +112,7 @@ fn open_frames(source: &mut Source, wanted: &SeriesRequest, moves: bool) -> Resu
             let remedy = if is_movie {
                 "--turntable N and --camera-path PATH.toml make a movie of one frame"
             } else {
-                "remove --frames"
+                "choose a name without %, and remove --frames"
             };
             Err(Failure::usage(format!("{name}: {reason}; {remedy}")))
         }

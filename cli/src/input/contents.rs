@@ -16,7 +16,7 @@ use crate::terminal::{profile, progress};
 use pinhole::image::color::LinearRgb;
 use pinhole::scene::Scene;
 use pinhole_data::added::ArrowKey;
-use pinhole_data::load::{self, Column, ConeSet, Dataset};
+use pinhole_data::load::{self, Column, ConeSet, Dataset, FileSet};
 use pinhole_data::select::KeptSpheres;
 use pinhole_figure::color_by::ColorKey;
 use pinhole_figure::scene_file::{ConeFile, Data, DataError, DataScene, IntegratorKind, SceneFile};
@@ -59,6 +59,16 @@ pub(crate) struct DataPlace {
     pub(crate) path: PathBuf,
     pub(crate) format: &'static load::Format,
     pub(crate) options: DataOptions,
+}
+
+impl DataPlace {
+    /// Returns true if there are frames after the first one.
+    fn has_more(&self, first: &Dataset) -> bool {
+        match FileSet::of(&self.path) {
+            Ok(Some(set)) => set.files().len() > 1,
+            _ => self.format.has_frames() && first.frames != Some(1),
+        }
+    }
 }
 
 impl Contents {
@@ -140,11 +150,15 @@ impl Source {
         let sky_image = sky_file.map(|file| self.resolve(file));
         let data = self.keys_of_data(&file);
         let data_file = data.as_ref().map(|data| self.data_path(data));
+        let data_files = data_file.map_or_else(Vec::new, |path| match FileSet::of(&path) {
+            Ok(Some(set)) => set.files().to_vec(),
+            _ => vec![path],
+        });
         let topology = data.as_ref().and_then(|data| self.options(&file, data).topology);
         let scene_file = (self.format == Format::Scene).then(|| self.path.clone());
-        let files = [scene_file, data_file, topology, sky_image.clone()];
         let cone_files = file.cone_files().map(|of| self.resolve(&of.file));
-        let files = files.into_iter().flatten().chain(cone_files).collect();
+        let others = [topology, sky_image.clone()].into_iter().flatten().chain(cone_files);
+        let files = scene_file.into_iter().chain(data_files).chain(others).collect();
         Ok(self.prepared(file, scene, Details { files, sky_image, ..details }))
     }
 
@@ -189,6 +203,8 @@ impl Source {
         let read = self.read_data(&place);
         let is_data = matches!(self.format, Format::Data(_));
         let mut loaded = if is_data { read } else { read.with_context(in_scene) }.map_err(as_usage)?;
+        let is_one = self.frames.is_none() && !self.keeps_columns && place.options.frame.is_none();
+        let is_first = is_one && place.has_more(&loaded);
         let mut data = place.data;
         let has_atoms = loaded.labels("species").is_some();
         let (mut of_kind, mut chosen) = (None, None);
@@ -201,6 +217,10 @@ impl Source {
             data = self.keys_of_data(&with_kind).unwrap_or(data);
             if place.options.radius.is_none() {
                 loaded.give_radius(data.radius);
+            }
+            if is_first {
+                let how = "--frame -1 draws the last one, and -o movie.mp4 or -o f%04d.png all of them";
+                loaded.notes.push(format!("{}: this is the first of several frames; {how}", self.path.display()));
             }
             let colors = data.color_by_kinds(&loaded, choice.colors.take());
             data.mapping.color.iter_mut().for_each(|by| self.joined.apply_to(by));
@@ -230,7 +250,9 @@ impl Source {
         let in_scene = || self.in_scene();
         let named = data.format.as_deref().and_then(load::Format::of_name);
         let Some(format) = self.data_format().or(named).or_else(|| data_format(&path)) else {
-            let problem = if extension(&path).as_deref() == Some("toml") {
+            let problem = if let Err(error) = FileSet::of(&path) {
+                data::named(&path, error)
+            } else if extension(&path).as_deref() == Some("toml") {
                 anyhow!("it names another scene file; name a data file")
             } else if let Some(refused) = load::Format::refused(&path) {
                 anyhow!("{}: {refused}", path.display())
@@ -244,7 +266,7 @@ impl Source {
             return Err(problem.context(in_scene()).into());
         };
         let options = self.options(file, &data);
-        options.check(format, file).map_err(|(message, is_flag)| match is_flag {
+        options.check(&path, format, file).map_err(|(message, is_flag)| match is_flag {
             true => Failure::usage(message),
             false => anyhow!(message).context(in_scene()).into(),
         })?;

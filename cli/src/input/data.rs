@@ -10,7 +10,7 @@ use crate::input::read_file::{check_regular, is_standard_input, open, read as re
 use crate::terminal::failure::Failure;
 use crate::terminal::memory;
 use pinhole_data::load::{
-    ConeSet, Dataset, FORMATS, FileRows, Format, LoadError, LoadErrorKind, Options, Place, Trajectory,
+    ConeSet, Dataset, FORMATS, FileRows, FileSet, Format, LoadError, LoadErrorKind, Options, Place, Trajectory,
 };
 use pinhole_figure::scene_file::{ConeFile, SceneFile};
 
@@ -52,9 +52,12 @@ impl DataOptions {
             .with("columns", (!self.columns.is_empty()).then(|| self.columns.join(",")))
     }
 
-    /// Refuses options that do not apply to the format. Returns the error, and whether a flag is wrong.
-    pub(crate) fn check(&self, format: &Format, file: &SceneFile) -> Result<(), (String, bool)> {
-        format.check(&self.to_read(format)).map_err(|error| {
+    /// Refuses options that do not apply to the file with this path and format. Returns the error, and whether a flag is
+    /// wrong.
+    pub(crate) fn check(&self, path: &Path, format: &Format, file: &SceneFile) -> Result<(), (String, bool)> {
+        // One of several files is a frame of any format.
+        let frame = self.frame.filter(|_| !FileSet::is_one(path));
+        format.check(&Self { frame, ..self.clone() }.to_read(format)).map_err(|error| {
             let error = error.to_string();
             // The error begins with the key.
             let (key, rest) = error.split_at(error.find(' ').unwrap_or(error.len()));
@@ -71,12 +74,17 @@ fn is_of_atoms(format: &Format) -> bool {
 /// Reads spheres from a file. Of a file with frames only the one that is asked for is in memory. Errors and notes get the
 /// path in front.
 pub(crate) fn read(path: &Path, format: &'static Format, options: &DataOptions) -> Result<Dataset> {
-    let mut loaded = match format.has_frames() && !is_standard_input(path) {
+    let mut loaded = match has_frames(path, format) && !is_standard_input(path) {
         true => read_frame(path, format, options)?,
         false => read_whole(path, format, options)?,
     };
     complete(&mut loaded, path, options);
     Ok(loaded)
+}
+
+/// Returns true if a file of this format can have frames, or a name stands for several files.
+pub(crate) fn has_frames(path: &Path, format: &Format) -> bool {
+    format.has_frames() || FileSet::is_one(path)
 }
 
 /// Gives all spheres the radius that is asked for, and puts the path before notes.

@@ -57,7 +57,7 @@ impl Source {
                 None => return Ok(Err("this scene has no `data`".to_owned())),
             },
         };
-        if !format.has_frames() {
+        if !data::has_frames(&path, format) {
             let with_frames = load::Format::extensions_of(load::Format::has_frames);
             return Ok(Err(format!("files of the format {} have no frames; those of {with_frames} have", format.name)));
         }

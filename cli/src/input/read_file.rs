@@ -9,7 +9,7 @@ use anyhow::{Context, Result, bail};
 use crate::bricks::EXTENSION;
 use crate::terminal::failure::Failure;
 use crate::terminal::memory;
-use pinhole_data::load;
+use pinhole_data::load::{self, FileSet};
 
 pub(crate) fn is_standard_input(path: &Path) -> bool {
     path == Path::new("-")
@@ -101,6 +101,17 @@ pub(crate) enum Format {
 impl Format {
     /// Returns the format for the extension of a path, or the failure of a file that is missing or of another kind.
     pub(crate) fn of(path: &Path) -> Result<Self, Failure> {
+        if let Some(set) = FileSet::of(path).with_context(|| path.display().to_string())?
+            && let Some(first) = set.files().first()
+        {
+            return match Self::of(first)? {
+                Self::Data(format) => Ok(Self::Data(format)),
+                _ => Err(Failure::usage(format!(
+                    "{}: several files together are frames of data; name one file",
+                    path.display()
+                ))),
+            };
+        }
         Self::of_name(path).map_err(|wrong| match is_standard_input(path) {
             true => Failure::Usage(wrong),
             false => open(path).map_or_else(Failure::Job, |_| Failure::Usage(wrong)),

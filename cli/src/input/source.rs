@@ -150,7 +150,7 @@ impl Source {
         }
         if let (Format::Data(format), Some(data)) = (self.format, file.data()) {
             let options = self.options(&file, data);
-            options.check(format, &file).map_err(|(error, _)| Failure::usage(error))?;
+            options.check(&self.path, format, &file).map_err(|(error, _)| Failure::usage(error))?;
         }
         self.check_camera(&file)
     }

@@ -34,6 +34,35 @@ fn assert_same(folder: &Folder, names: [&str; 2]) {
     assert!(a == b, "{names:?} differ");
 }
 
+/// Several files make the pictures of one file with their frames, however they are named.
+#[test]
+fn files_whose_names_differ_in_a_number_are_frames() {
+    let folder = folder();
+    for frame in 0..5 {
+        let text = format!("1\nframe {frame}\nO {} 0 0\n", 2 * frame);
+        std::fs::write(folder.path(&format!("s.{}.xyz", 10 * frame)), text).unwrap();
+    }
+    folder.run(&format!("render a.xyz -o a%d.png {SMALL}")).succeeded();
+    let two = "s.40.xyz s.20.xyz";
+    let all = "s.0.xyz s.10.xyz s.20.xyz s.30.xyz s.40.xyz";
+    for (number, names) in [all, "s.*.xyz", two, "s.{20,40}.xyz"].into_iter().enumerate() {
+        folder.run(&format!("{names} -o b{number}_%d.png --camera-from 0 {SMALL}")).succeeded();
+    }
+    for frame in 0..5 {
+        let names = [0, 1].map(|number| format!("b{number}_{frame}.png"));
+        assert_same(&folder, [&names[0], &names[1]]);
+    }
+    folder.run(&format!("s.*.xyz -o c%d.png {SMALL}")).succeeded();
+    (0..5).for_each(|frame| assert_same(&folder, [&format!("a{frame}.png"), &format!("c{frame}.png")]));
+    [0, 1].iter().for_each(|frame| assert_same(&folder, [&format!("b2_{frame}.png"), &format!("b3_{frame}.png")]));
+    // One picture says that there are more.
+    let run = folder.run("s.*.xyz --backend cpu --size 40x20").succeeded();
+    assert!(run.stderr.contains("the first of several frames") && run.stderr.contains("wrote s.png"), "{}", run.stderr);
+    folder.refuses(&format!("{all} s.png -o d.gif"), 2, "s.png: this is a picture, not a frame; quote the name");
+    folder.refuses("s.0.xyz a.xyz -o d.gif", 2, "one file is rendered at a time, but for frames");
+    folder.refuses("none.*.xyz -o d.gif", 1, "a number in the place of the *");
+}
+
 #[test]
 fn frames_have_numbers_and_one_camera() {
     let folder = folder();

@@ -3,7 +3,7 @@
 
 use std::collections::VecDeque;
 use std::ffi::{OsStr, OsString};
-use std::path::Path;
+use std::path::{Path, PathBuf};
 
 use clap::{Arg, Command, CommandFactory};
 use strsim::normalized_levenshtein;
@@ -14,7 +14,7 @@ use crate::command_line::Arguments;
 use crate::terminal::failure::Failure;
 use crate::terminal::text::in_quotes;
 use pinhole_data::css;
-use pinhole_data::load::Format;
+use pinhole_data::load::{FileSet, Format};
 use pinhole_data::show::ShowStyle;
 use pinhole_figure::settings::flags::{Flag, Value};
 
@@ -56,6 +56,9 @@ const SHORT: &[(&str, &str)] = &[
 
 /// Flags with a selection, which has blanks.
 const SELECTIONS: [&str; 6] = ["select", "focus", "show", "hide", "ghost", "define"];
+
+/// Endings of pictures, which a shell puts among the files of a pattern.
+const PICTURES: [&str; 6] = ["apng", "exr", "gif", "json", "mp4", "png"];
 
 /// Frequent colors, to tell a misspelt one from a column.
 const COLORS: [&str; 13] = [
@@ -150,6 +153,7 @@ impl Reader<'_> {
         }
         self.give_back_file();
         self.name_topology();
+        self.join_files();
         self.refuse_more_files()?;
         let asked = std::mem::take(&mut self.asked);
         for (name, value) in asked.flags(|name| self.taken(name))? {
@@ -338,9 +342,8 @@ impl Reader<'_> {
         }
     }
 
-    /// Takes the file beside a trajectory of positions alone as its topology.
+    /// Takes the one other file beside trajectories of positions alone as their topology.
     fn name_topology(&mut self) {
-        let &[first, second] = &self.files[..] else { return };
         let has_topology = |word: &OsString| word.to_str().is_some_and(|word| word.starts_with("--topology"));
         if self.find("topology").is_none() || self.plain.iter().any(has_topology) {
             return;
@@ -349,14 +352,31 @@ impl Reader<'_> {
             let format = self.plain.get(place).and_then(|word| Format::of_path(Path::new(word)).ok()?);
             format.is_some_and(|format| format.needs_topology)
         };
-        let place = match [first, second].map(needs_it) {
-            [true, false] => second,
-            [false, true] => first,
-            _ => return,
-        };
+        let (trajectories, others): (Vec<usize>, Vec<usize>) = self.files.iter().partition(|place| needs_it(**place));
+        let &[place] = &others[..] else { return };
+        if trajectories.is_empty() {
+            return;
+        }
         if let Some(word) = self.plain.get_mut(place).filter(|word| word.to_str().is_some()) {
             *word = format!("--topology={}", word.to_string_lossy()).into();
         }
+    }
+
+    /// Takes several files whose names differ in a number as the frames of a trajectory.
+    fn join_files(&mut self) {
+        if self.command.get_positionals().count() != 1 {
+            return;
+        }
+        let is_file = |place: &&usize| self.plain.get(**place).is_some_and(|word| Path::new(word).is_file());
+        let files: Vec<usize> = self.files.iter().filter(is_file).copied().collect();
+        let paths: Vec<PathBuf> = files.iter().filter_map(|place| self.plain.get(*place).map(PathBuf::from)).collect();
+        let (Some(name), Some((first, others))) = (FileSet::name_of(&paths), files.split_first()) else { return };
+        self.plain[*first] = name.into();
+        for place in others.iter().rev() {
+            self.plain.remove(*place);
+        }
+        // Words after `--` are not among the plain ones yet, so places are not needed any more but that of the set.
+        self.files = vec![*first];
     }
 
     /// Refuses a second file, which clap would call an unexpected argument.
@@ -364,9 +384,22 @@ impl Reader<'_> {
         let most = self.command.get_positionals().count();
         let files = self.files.iter().filter_map(|place| self.plain.get(*place));
         let is_topology = |word: &&OsString| word.to_string_lossy().starts_with("--topology");
-        match files.filter(|word| !is_topology(word)).nth(most) {
-            Some(word) if most == 1 && Path::new(word).is_file() => Err(Failure::usage(format!(
-                "{}: one file is rendered at a time; join frames to one file first, or render each file",
+        let files: Vec<&OsString> = files.filter(|word| !is_topology(word)).collect();
+        let paths = files.iter().map(PathBuf::from);
+        let ending = |path: &PathBuf| path.extension().and_then(OsStr::to_str).map(str::to_ascii_lowercase);
+        let is_picture = |path: &PathBuf| ending(path).is_some_and(|ending| PICTURES.contains(&ending.as_str()));
+        let (pictures, others): (Vec<_>, Vec<_>) = paths.partition(is_picture);
+        if let (Some(picture), Some(name)) = (pictures.first(), FileSet::name_of(&others)) {
+            return Err(Failure::usage(format!(
+                "{}: this is a picture, not a frame; quote the name of all frames: {}",
+                picture.display(),
+                in_quotes(&name.to_string_lossy())
+            )));
+        }
+        match files.get(most) {
+            Some(word) if most == 1 && Path::new(*word).is_file() => Err(Failure::usage(format!(
+                "{}: one file is rendered at a time, but for frames, whose names differ in a number; render each file, or \
+                 join them first",
                 word.to_string_lossy()
             ))),
             _ => Ok(()),

@@ -194,6 +194,12 @@ impl Dataset {
         self.unknown = left;
     }
 
+    /// The radius of all spheres and the note about it, if the file gives none.
+    pub(super) fn guessed_radius(&self) -> Option<(f64, String)> {
+        let note = self.notes.iter().find(|note| note.contains(NO_RADII))?;
+        (!self.spheres.is_empty()).then(|| (self.spheres.at(0)[3], note.clone()))
+    }
+
     /// Gives all spheres a radius, if there is one.
     pub fn give_radius(&mut self, radius: Option<f64>) {
         if let Some(radius) = radius {

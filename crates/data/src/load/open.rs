@@ -1,4 +1,4 @@
-//! Opens files of spheres, as a whole or frame by frame, and chooses their format. The topology, a file that describes
+//! Opens one file of spheres, as a whole or frame by frame, and chooses its format. The topology, a file that describes
 //! the spheres of a trajectory, is opened in the same way.
 
 use std::io::{self, Read as _};
@@ -12,19 +12,15 @@ use super::format::{Format, FrameIndex, Frames, Options, ReadMethod, read_from_m
 use super::source::{Source, start_of};
 use super::topology::Topology;
 
-/// Reads a file of spheres. Its format is the one in the options, or else follows from the extension, or else from the
-/// content. Only the wanted frame of a file with several frames is in memory; [`Trajectory`] reads several.
-///
-/// # Errors
-/// Returns an error if the file cannot be read, its format is not known, or an option does not apply to it.
-pub fn open(path: impl AsRef<Path>, options: &Options) -> Result<Dataset, LoadError> {
-    let path = path.as_ref();
+/// Reads one file.
+pub(super) fn open_file(path: &Path, options: &Options) -> Result<Dataset, LoadError> {
     let failed = |error: io::Error| LoadError::from(error).in_file(path);
     let mut source = Source::open(path).map_err(failed)?;
     let format = format_of(path, options, &mut source).map_err(|error| error.in_file(path))?;
     if format.has_frames() {
-        let frames = Trajectory::open_up_to(path, &options.clone().with_format(format))?;
-        return frames.into_frame(options.frame.unwrap_or_default());
+        let wanted = options.frame.unwrap_or_default();
+        let file = OpenFile::find(path, &options.clone().with_format(format), Some(wanted))?;
+        return file.into_frame(wanted);
     }
     if let Source::Plain(reader) = &source
         && let Some(rows) = FileRows::find(format, reader.get_ref(), options).map_err(|error| error.in_file(path))?
@@ -97,7 +93,7 @@ impl Format {
 /// Reads the first frame of the topology that the options name, if they name one.
 fn open_topology(options: &Options) -> Result<Option<Topology>, LoadError> {
     let Some(path) = options.topology.as_deref() else { return Ok(None) };
-    let loaded = open(path, &Options::default()).map_err(|error| {
+    let loaded = open_file(path, &Options::default()).map_err(|error| {
         let place = match error.place {
             Place::File(_) => Place::Whole,
             place => place,
@@ -108,9 +104,9 @@ fn open_topology(options: &Options) -> Result<Option<Topology>, LoadError> {
     Ok(Some(Topology::new(path.to_path_buf(), loaded)))
 }
 
-/// A file of several frames. [`Trajectory::frame`] reads one of them; the others are not in memory.
+/// A file whose frames were found.
 #[derive(Debug)]
-pub struct Trajectory {
+pub(super) struct OpenFile {
     path: PathBuf,
     source: Source,
     frames: Frames,
@@ -118,36 +114,9 @@ pub struct Trajectory {
     options: Options,
 }
 
-impl Trajectory {
-    /// Opens a file and finds its frames, in one pass over the file. Its format is the one in the options, or else
-    /// follows from the extension, or else from the content. The other options apply to every frame.
-    ///
-    /// If the file ends within a frame, such as one that a program is still writing, the frames before it can be
-    /// read, and [`Trajectory::problem`] has the error.
-    ///
-    /// # Errors
-    /// Returns an error if the file cannot be read, its format is not known or has no frames, an option does not apply
-    /// to it, or not even the first frame is complete.
-    pub fn open(path: impl AsRef<Path>, options: &Options) -> Result<Self, LoadError> {
-        Self::find(path.as_ref(), options, None)
-    }
-
-    /// Opens a file like [`Trajectory::open`], and finds its frames up to the one in the options or else the first.
-    ///
-    /// # Errors
-    /// Returns an error if there is no such frame, or for the reasons of [`Trajectory::open`].
-    pub fn open_up_to(path: impl AsRef<Path>, options: &Options) -> Result<Self, LoadError> {
-        let wanted = options.frame.unwrap_or_default();
-        let found = Self::find(path.as_ref(), options, Some(wanted))?;
-        let frames = found.len();
-        if wanted < frames {
-            return Ok(found);
-        }
-        let none = || LoadError::no_such_frame(wanted, frames);
-        Err(found.index.problem.unwrap_or_else(none))
-    }
-
-    fn find(path: &Path, options: &Options, last: Option<usize>) -> Result<Self, LoadError> {
+impl OpenFile {
+    /// Finds the frames of a file, up to the last that is wanted.
+    pub(super) fn find(path: &Path, options: &Options, last: Option<usize>) -> Result<Self, LoadError> {
         let of_file = |error: LoadError| error.in_file(path);
         let mut source = Source::open(path).map_err(|error| of_file(error.into()))?;
         let format = format_of(path, options, &mut source).map_err(of_file)?;
@@ -166,44 +135,34 @@ impl Trajectory {
     }
 
     /// Number of complete frames.
-    #[must_use]
-    pub fn len(&self) -> usize {
+    pub(super) fn len(&self) -> usize {
         self.index.frames.len()
     }
 
-    /// Always false: a trajectory has at least one frame.
-    #[must_use]
-    pub fn is_empty(&self) -> bool {
-        self.index.frames.is_empty()
-    }
-
     /// The error after the last complete frame, if there is one.
-    #[must_use]
-    pub fn problem(&self) -> Option<&LoadError> {
+    pub(super) fn problem(&self) -> Option<&LoadError> {
         self.index.problem.as_ref()
     }
 
     /// Number of bytes of a frame in the file; `None` if there is no such frame.
-    #[must_use]
-    pub fn frame_bytes(&self, index: usize) -> Option<u64> {
+    pub(super) fn frame_bytes(&self, index: usize) -> Option<u64> {
         self.index.frames.get(index).map(|span| span.bytes.end - span.bytes.start)
     }
 
     /// Reads one frame, counted from 0.
-    ///
-    /// # Errors
-    /// Returns an error if there is no such frame, or it cannot be read. Lines are counted from the start of the file.
-    pub fn frame(&mut self, index: usize) -> Result<Dataset, LoadError> {
+    pub(super) fn frame(&mut self, index: usize) -> Result<Dataset, LoadError> {
         let Self { path, source, frames, index: found, options } = self;
         frames.read(source, found, index, options).map_err(|error| error.in_file(path))
     }
 
     /// Reads one frame, counted from 0, and checks that the frames are followed by the end of the file or by another
     /// frame, because a wrong number of atoms shows there. A fault after complete frames of binary data is only a note.
-    ///
-    /// # Errors
-    /// Returns the errors of [`Trajectory::frame`], and then [`Trajectory::problem`].
-    pub fn into_frame(mut self, index: usize) -> Result<Dataset, LoadError> {
+    pub(super) fn into_frame(mut self, index: usize) -> Result<Dataset, LoadError> {
+        if index >= self.len()
+            && let Some(problem) = self.index.problem.take()
+        {
+            return Err(problem);
+        }
         let loaded = self.frame(index)?;
         self.index.with_problem(loaded)
     }
@@ -217,7 +176,7 @@ mod tests {
     fn a_file_of_unknown_format_is_refused() {
         let refused = from_bytes(b"hello", "a.doc", &Options::default()).unwrap_err().to_string();
         assert!(refused.ends_with("raw-f32x4"), "{refused}");
-        let missing = open("no/such/file.xyz", &Options::default()).unwrap_err().to_string();
+        let missing = open_file("no/such/file.xyz".as_ref(), &Options::default()).unwrap_err().to_string();
         assert!(missing.starts_with("no/such/file.xyz: cannot be read: "), "{missing}");
     }
 

@@ -15,6 +15,7 @@ mod cases;
 
 mod binary;
 mod cones;
+mod file_set;
 mod files;
 mod npy;
 mod xyz;

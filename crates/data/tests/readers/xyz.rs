@@ -220,6 +220,51 @@ fn frames_are_those_of_the_whole_text() {
     }
 }
 
+/// Several files are one trajectory, in the order of their numbers.
+#[test]
+fn files_under_one_name_are_frames() {
+    let folder = TempDir::new().unwrap();
+    let atoms = |x: f64| format!("1\n\nH {x} 0 0\n");
+    for (name, text) in [("a9.xyz", atoms(0.0)), ("a10.xyz", atoms(1.0) + &atoms(2.0)), ("a100.xyz", atoms(3.0))] {
+        written(&folder, name, &text);
+    }
+    let all = folder.path().join("a*.xyz");
+    let mut trajectory = Trajectory::open(&all, &Options::default()).unwrap();
+    for frame in [3, 0, 2, 1, 2] {
+        assert_eq!(trajectory.frame(frame).unwrap().spheres.at(0)[0], frame as f64);
+        let opened = load::open(&all, &Options::default().with_frame(frame)).unwrap();
+        assert_eq!(opened.spheres.at(0)[0], frame as f64);
+        assert!(trajectory.frame_bytes(frame).unwrap() > 0);
+    }
+    let none = load::open(&all, &Options::default().with_frame(4)).unwrap_err().to_string();
+    assert!(none.starts_with("there is no frame 4; the file has 4 frames"), "{none}");
+    // The frames end before a fault, whose file is named, but a file that is not there is an error.
+    written(&folder, "a20.xyz", "2\n\nH 5 0 0\n");
+    let trajectory = Trajectory::open(&all, &Options::default()).unwrap();
+    let problem = trajectory.problem().unwrap().to_string();
+    assert!(trajectory.len() == 3 && problem.contains("a20.xyz: line 1: "), "{problem}");
+    let error = Trajectory::open(folder.path().join("a{9,7}.xyz"), &Options::default()).unwrap_err().to_string();
+    assert!(error.contains("a7.xyz: cannot be read"), "{error}");
+}
+
+/// The radius of spheres without one is that of the first frame, so that they keep their size.
+#[test]
+fn spheres_keep_their_size_in_all_frames() {
+    let folder = TempDir::new().unwrap();
+    let table = |x: f64| format!("x,y,z\n0,0,0\n{x},0,0\n");
+    written(&folder, "t0.csv", &table(2.0));
+    written(&folder, "t1.csv", &table(3.0));
+    let all = folder.path().join("t*.csv");
+    let mut trajectory = Trajectory::open(&all, &Options::default()).unwrap();
+    for loaded in [trajectory.frame(1), load::open(&all, &Options::default().with_frame(1)), trajectory.frame(0)] {
+        let loaded = loaded.unwrap();
+        assert_eq!(loaded.spheres.at(1)[3], 1.0);
+        assert!(loaded.notes.len() == 1 && loaded.notes[0].contains("the radius 1,"), "{:?}", loaded.notes);
+    }
+    let alone = load::open(folder.path().join("t1.csv"), &Options::default()).unwrap();
+    assert_eq!(alone.spheres.at(1)[3], 1.5);
+}
+
 /// Complete frames can be read while a program is still writing.
 #[test]
 fn a_file_that_ends_within_a_frame_has_those_before_it() {

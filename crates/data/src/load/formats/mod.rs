@@ -9,6 +9,7 @@ use crate::load::compressed::without_ending;
 use crate::load::cone_kind::ConeKind;
 use crate::load::dataset::Dataset;
 use crate::load::error::LoadError;
+use crate::load::file_set::FileSet;
 use crate::load::format::{Format, Options, ReadMethod};
 use crate::load::source::Source;
 use crate::load::table::Columns;
@@ -287,11 +288,17 @@ impl Format {
     }
 
     /// Returns the format of a file by its extension, or else by the first bytes of a regular file, which may be
-    /// compressed. Other files are not opened, because a pipe can be read only once.
+    /// compressed. Other files are not opened, because a pipe can be read only once. Where a name stands for several
+    /// files, it is the format of the first.
     ///
     /// # Errors
     /// Returns an error if the first bytes are needed and cannot be read.
     pub fn of_path(path: &Path) -> io::Result<Option<&'static Self>> {
+        if let Ok(Some(set)) = FileSet::of(path)
+            && let Some(first) = set.files().first()
+        {
+            return Self::of_path(first);
+        }
         let format = Self::of_file_name(path);
         if format.is_some() || !path.is_file() {
             return Ok(format);
