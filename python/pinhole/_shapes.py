@@ -75,8 +75,11 @@ class Shapes:
 
     def _text(self, settings: Mapping[str, Any]) -> Text:
         tables = _settings.picture_settings(settings)
-        _, of_kind, background, _ = self._data.kind()
-        tables = {"style": _settings.style_of(tables), "background": background, **tables}
+        _, of_kind, usual, _ = self._data.kind()
+        style = _settings.style_of(tables)
+        if style == "default" and usual is not None and "style" not in tables and "background" not in tables:
+            style = usual
+        tables = {"style": style, **tables}
         camera = tables.pop("camera", None)
         camera = as_camera(self.camera if camera is None else camera)
         tables["camera"] = camera._table(self._data) if isinstance(camera, Camera) else camera

@@ -29,6 +29,7 @@ use pinhole_figure::color_by::ColorKey;
 use pinhole_figure::framing::swept;
 use pinhole_figure::kind::{KindSettings, KindView};
 use pinhole_figure::scene_file::{Data, DataScene};
+use pinhole_figure::style::Style;
 
 /// Spheres: arrays or a file, and the settings that concern data.
 #[pyclass(frozen, module = "pinhole._pinhole")]
@@ -243,15 +244,15 @@ impl SphereData {
         self.columns().iter().map(|column| column.name.clone()).collect()
     }
 
-    /// The name of the kind of data, and the settings that follow from it: keys of a scene file about data, the
-    /// background, and the camera with its direction and the direction that is up.
+    /// The name of the kind of data, and the settings that follow from it: keys of a scene file about data, the style, and
+    /// the camera with its direction and the direction that is up.
     fn kind(&self) -> KindOfData {
-        let KindSettings { data, background, view, .. } = &self.kind;
+        let KindSettings { data, style, view, .. } = &self.kind;
         let view = view.as_ref();
         let view = view.map(|KindView { camera, direction, up }| {
             (camera.clone(), direction.map(|direction| direction.to_array()), up.to_array())
         });
-        (self.traits.as_ref().map(|traits| traits.kind.name()), data.clone(), *background, view)
+        (self.traits.as_ref().map(|traits| traits.kind.name()), data.clone(), style.map(Style::name), view)
     }
 
     /// The meaning of colours, if a column gives them.

@@ -75,7 +75,7 @@ def test_gsd_and_pyvista():
     frame = SimpleNamespace(particles=particles, configuration=box, bonds=SimpleNamespace(group=[[0, 1]]))
     spheres = interop.from_gsd(frame)
     assert np.allclose(spheres.radii, 0.05) and spheres["type"].tolist() == ["A", "B", "B", "A"]
-    assert spheres.cell.tolist() == [[4, 0, 0], [2, 4, 0], [0, 0, 4]] and spheres.kind == "particles"
+    assert spheres.cell.tolist() == [[4, 0, 0], [2, 4, 0], [0, 0, 4]] and spheres.kind == "polymer"
     assert interop.from_gsd(frame, bonds=True)._data.cone_count() == 14
     assert len(interop.from_gsd([frame, frame])) == 2
     points = SimpleNamespace(points=cloud(3), point_data={"heat": np.arange(3.0), "normals": np.zeros((3, 3))})

@@ -85,7 +85,7 @@ def test_a_cell():
         (lambda of: of[1.5], "give a name"),
         (lambda of: of.select("heat > 1e9"), "select"),
         (lambda of: of.mask("nix > 1"), "there is no column `nix`"),
-        (lambda of: ph.Spheres(PLACES, kind="solid"), 'kind is "solid"; the kinds are coarse'),
+        (lambda of: ph.Spheres(PLACES, kind="solid"), 'kind is "solid"; the kinds are scan'),
         (lambda of: ph.Spheres(PLACES, kind=3), "write the name of a kind"),
         (lambda of: of.render(kind="plain"), "kind is not an argument here; give it to Spheres"),
         (lambda of: ph.Spheres(PLACES, cell=[1, 2]), "cell has the shape"),

@@ -158,6 +158,11 @@ pub struct Studio {
     /// to that of samples, and not only pixels at edges. Otherwise spheres that are smaller than pixels may be missed.
     #[serde(rename = "dense")]
     pub is_dense: bool,
+    /// True if spheres shine through each other and are not lit, as stars. The light of a pixel is the sum over all spheres
+    /// of their colour, times their opacity, times the part of the pixel that their disk covers, in linear light. It is
+    /// exposed so that one in ten pixels with light is brighter than 1/3, and compressed, so that none is brighter than 1.
+    /// Choose a dark background. Lenses have no effect on it. Nothing is random.
+    pub added_light: bool,
     /// The largest number of translucent surfaces that are visible behind each other: 1 to 64.
     pub max_surfaces: u32,
     /// Fading of colours with distance.
@@ -175,6 +180,7 @@ impl Default for Studio {
             shadows: true,
             is_smooth: false,
             is_dense: false,
+            added_light: false,
             max_surfaces: 16,
             depth_cue: None,
             outline: None,

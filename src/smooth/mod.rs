@@ -8,6 +8,8 @@
 //!
 //! So a picture depends only on shapes, view, settings and ids, and does not depend on
 //! the device that found them.
+//!
+//! Where [light adds up](crate::render::Studio::added_light), spheres have the light of [`added::AddedLight`] in the place of spots.
 
 use glam::DVec3;
 
@@ -18,6 +20,7 @@ use crate::light::LightKind;
 use crate::parallel;
 use crate::render::{Decision, Picture, Progress, RenderSettings, Watch};
 use crate::scene::{Scene, SceneAppearance, SharedShapes};
+use added::Stars;
 #[cfg(feature = "gpu")]
 use cells::Cells;
 #[cfg(feature = "gpu")]
@@ -26,6 +29,7 @@ use lit::Lit;
 use spots::{Finder, Rays, Row, Spot};
 use tables::Tables;
 
+mod added;
 mod caps;
 mod cells;
 mod lamps;
@@ -42,15 +46,18 @@ const BAND: usize = 1 << 21;
 
 /// Returns what [`RenderSettings::is_smooth`] does, for spheres with this appearance.
 fn is_smooth(settings: &RenderSettings, appearance: &SceneAppearance, camera: &dyn Camera) -> bool {
-    let is_asked = settings.studio_parameters().is_some_and(|studio| studio.is_smooth);
-    is_asked && !camera.has_lens() && !settings.has_chance(appearance)
+    let studio = settings.studio_parameters();
+    // Nothing is random in light that adds up.
+    studio.is_some_and(|studio| studio.added_light)
+        || studio.is_some_and(|studio| studio.is_smooth) && !camera.has_lens() && !settings.has_chance(appearance)
 }
 
 impl RenderSettings {
     /// Returns true if nothing is random in the picture: a [smooth](crate::render::Studio::is_smooth) studio is asked for, no
     /// noise is to be removed, all spheres are opaque and have no gloss, there is no ground and no lens, and lights are at
     /// the eye, or infinitely far away with an angular radius of at most 15°. Such a picture follows from the spheres that rays through the
-    /// centres of pixels hit.
+    /// centres of pixels hit. So is a studio with [added light](crate::render::Studio::added_light), which follows from all
+    /// spheres.
     #[must_use]
     pub fn is_smooth(&self, scene: &Scene, camera: &dyn Camera) -> bool {
         is_smooth(self, scene.checked_appearance(), camera)
@@ -116,7 +123,9 @@ impl<'a> SmoothPicture<'a> {
         let shadows = self.settings.studio_parameters().is_some_and(|studio| studio.shadows);
         let is_lamp = |kind| shadows && matches!(kind, LightKind::Directional { .. });
         let lamps = self.settings.lights.iter().filter(|light| is_lamp(light.kind)).count();
+        let added = if self.has_added_light() { added::AddedLight::bytes(&self.view.film) } else { 0 };
         spots
+            + added
             + Levels::bytes(&cells, self.shapes.len())
             + openness::Openness::bytes(&cells, pixels)
             + lamps as u64 * lamps::Lamp::bytes(&cells, pixels)
@@ -161,16 +170,55 @@ impl<'a> SmoothPicture<'a> {
     pub(crate) fn pixels(&self, pixels: &[([u32; 2], Vec<u32>)]) -> Vec<Averages> {
         let mut tables = self.tables();
         let Some((finder, mut lit)) = self.tools(&mut tables) else { return Vec::new() };
+        let added = self.has_added_light().then(|| self.stars().light(|| true)).flatten();
         let spots = parallel::map(pixels.len(), |at| {
             let (pixel, ids) = &pixels[at];
             let mut found = Row::default();
             finder.pixel(*pixel, ids, &mut found);
-            found
+            self.leave_out_stars(found)
         });
         lit.see(&spots);
-        let averages = parallel::map(pixels.len(), |at| self.averages(&lit, &spots[at].all));
+        let averages = parallel::map(pixels.len(), |at| {
+            let light = added.as_ref().map(|added| added.of(self.view.film.in_whole(pixels[at].0)));
+            self.averages(&lit, &spots[at].all, light)
+        });
         self.shapes.keep(tables);
         averages
+    }
+
+    fn has_added_light(&self) -> bool {
+        self.settings.studio_parameters().is_some_and(|studio| studio.added_light)
+    }
+
+    /// The spheres whose light adds up.
+    fn stars(&self) -> Stars<'a> {
+        let Self { shapes, appearance, origin, view, .. } = *self;
+        Stars { spheres: &shapes.spheres, origin, appearance, view }
+    }
+
+    /// The spots of a row of pixels.
+    fn row(&self, finder: &Finder<'_>, ids: &[u32], row: u32) -> Row {
+        if self.has_added_light() && self.shapes.cones.is_empty() {
+            return Row { all: Vec::new(), counts: vec![0; self.view.film.width() as usize] };
+        }
+        self.leave_out_stars(finder.row(ids, row))
+    }
+
+    /// Leaves out the spots of spheres whose light adds up.
+    fn leave_out_stars(&self, mut row: Row) -> Row {
+        if self.has_added_light() {
+            let mut left = row.all.iter();
+            for count in &mut row.counts {
+                let of_pixel = left.by_ref().take((*count).into());
+                *count = of_pixel.filter(|spot| self.is_cone(spot)).count() as u8;
+            }
+            row.all.retain(|spot| self.is_cone(spot));
+        }
+        row
+    }
+
+    fn is_cone(&self, spot: &Spot) -> bool {
+        spot.id as usize >= self.shapes.spheres.len()
     }
 
     /// The tables of an earlier picture of the same spheres, or new ones.
@@ -189,23 +237,28 @@ impl<'a> SmoothPicture<'a> {
     fn draw_from(&self, ids: &[u32], image: &mut Image, mut go_on: impl FnMut(f64) -> bool) -> Option<(f64, usize)> {
         let mut tables = self.tables();
         let (finder, mut lit) = self.tools(&mut tables)?;
+        let added = match self.has_added_light() {
+            true => Some(self.stars().light(|| go_on(0.0))?),
+            false => None,
+        };
         let [width, height] = [image.width(), image.height()].map(|side| side as usize);
         let mut opacity = 0.0;
         let side = self.rays.side as usize;
         for rows in parallel::ranges(height, (BAND / (width * side * side)).max(1)) {
-            let spots = parallel::map(rows.len(), |row| finder.row(ids, (rows.start + row) as u32));
+            let spots = parallel::map(rows.len(), |row| self.row(&finder, ids, (rows.start + row) as u32));
             lit.see(&spots);
             if !go_on((rows.start + rows.len() / 2) as f64 / height as f64) {
                 return None;
             }
-            let parts = spots.iter().zip(image.rows_mut(rows.clone())).collect();
-            let sums = parallel::map_parts(parts, |(row, mut to)| {
+            let parts = spots.iter().zip(image.rows_mut(rows.clone())).zip(rows.clone()).collect();
+            let sums = parallel::map_parts(parts, |((row, mut to), number)| {
                 let mut left = &row.all[..];
                 let mut opacity = 0.0;
                 for (column, count) in row.counts.iter().enumerate() {
                     let (spots, others) = left.split_at(usize::from(*count));
                     left = others;
-                    let averages = self.averages(&lit, spots);
+                    let pixel = self.view.film.in_whole([column as u32, number as u32]);
+                    let averages = self.averages(&lit, spots, added.as_ref().map(|added| added.of(pixel)));
                     opacity += f64::from(averages.alpha);
                     to.set_averages(column, &averages);
                 }
@@ -221,8 +274,8 @@ impl<'a> SmoothPicture<'a> {
         Some((opacity, crowded))
     }
 
-    /// The averages over the spots of a pixel.
-    fn averages(&self, lit: &Lit<'_>, spots: &[Spot]) -> Averages {
+    /// The averages over the spots of a pixel, with light that adds up.
+    fn averages(&self, lit: &Lit<'_>, spots: &[Spot], added: Option<DVec3>) -> Averages {
         let (mut color, mut albedo, mut alpha) = (DVec3::ZERO, DVec3::ZERO, 0.0);
         for spot in spots {
             let share = f64::from(spot.share);
@@ -231,6 +284,11 @@ impl<'a> SmoothPicture<'a> {
             alpha += share;
         }
         color += (1.0 - alpha) * lit.background;
+        if let Some(added) = added {
+            color += added;
+            albedo += added;
+            alpha += (1.0 - alpha) * added.max_element();
+        }
         let [color, albedo] = [color, albedo].map(|color| color.as_vec3().to_array());
         Averages { color, alpha: alpha as f32, albedo, samples: self.rays.count, variance: 0.0 }
     }

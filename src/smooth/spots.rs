@@ -57,7 +57,10 @@ impl Rays {
         // More rays change nothing that is seen, and spots are counted in a byte.
         let count = settings.sampling.samples.min(256);
         let odd = 2 * ((f64::from(count).sqrt() - 1.0) / 2.0).round() as u32 + 1;
-        let side = settings.studio_parameters().filter(|studio| studio.is_dense).map_or(1, |_| odd.min(15));
+        let side = settings
+            .studio_parameters()
+            .filter(|studio| studio.is_dense && !studio.added_light)
+            .map_or(1, |_| odd.min(15));
         if let (Some(film), true) = (film.divided(side), side > 1) {
             return Self { film, first: [0; 2], side, count: side * side };
         }

@@ -45,6 +45,14 @@ fn dense(mut settings: RenderSettings) -> RenderSettings {
     settings
 }
 
+/// The settings in which spheres shine through each other.
+fn stars(mut settings: RenderSettings) -> RenderSettings {
+    if let Integrator::Studio(studio) = &mut settings.integrator {
+        studio.added_light = true;
+    }
+    settings
+}
+
 fn white(spheres: &Spheres) -> Scene {
     Scene::from_f32(spheres.clone(), LinearRgb::WHITE).unwrap()
 }
@@ -274,7 +282,7 @@ fn parts_of_a_film_are_as_the_whole() {
     if let Integrator::Studio(studio) = &mut settings.integrator {
         *studio = Studio { outline: Some(Outline::thin()), is_smooth: true, ..Studio::default() };
     }
-    for settings in [settings.clone(), dense(settings)] {
+    for settings in [settings.clone(), dense(settings.clone()), stars(settings)] {
         let whole = picture(&scene, &camera, film, &settings);
         let (unfinished, layers) = (settings.unfinished(), settings.layers_for(LayerSet::ALL));
         let mut joined = Image::new(24, 18, layers).unwrap();
@@ -343,12 +351,40 @@ fn any_spheres_can_be_drawn() {
         ("nothing", Vec::new()),
     ] {
         let scene = white(&spheres);
-        for radius in [None, Some(1e-6), Some(1e9)] {
-            let image = picture(&scene, &camera(&scene), Film::new(16, 16).unwrap(), &ambient(radius, 4));
+        let all = [ambient(None, 4), ambient(Some(1e-6), 4), ambient(Some(1e9), 4), stars(ambient(None, 4))];
+        for settings in all {
+            let image = picture(&scene, &camera(&scene), Film::new(16, 16).unwrap(), &settings);
             let is_share = |color: &[f32; 3]| color.iter().all(|c| (0.0..=1.0 + 1e-6).contains(c));
             assert!(image.color().iter().all(is_share), "{name}");
         }
     }
+}
+
+/// Every sphere that the ray through a pixel meets shines there, in whatever order they lie, and faint ones less.
+#[test]
+fn stars_shine_through_each_other() {
+    let row = |count: usize| (0..count).map(|k| [0.0, 0.0, k as f32, 0.2]).collect::<Spheres>();
+    let beside = [1.0, 0.0, 0.0, 0.2];
+    let film = Film::new(90, 30).unwrap();
+    let pose = Pose::looking_along(DVec3::new(0.0, 0.0, 50.0), DVec3::NEG_Z, DVec3::Y).unwrap();
+    let camera = OrthographicCamera::new(pose, [3.0, 1.0]).unwrap();
+    // x / (1 + x) is turned back into x.
+    let light = |image: &Image, column: usize| {
+        let light = f64::from(image.color()[15 * 90 + column][0]);
+        light / (1.0 - light)
+    };
+    for count in 1..7 {
+        let scene = white(&row(count).into_iter().chain([beside]).collect());
+        let image = picture(&scene, &camera, film, &stars(ambient(None, 1)));
+        let ratio = light(&image, 45) / light(&image, 60);
+        assert!((ratio / count as f64 - 1.0).abs() < 1e-5, "{count}: {ratio}");
+    }
+    let half = SurfaceProperties { opacity: 0.5, ..SurfaceProperties::default() };
+    let [mut faint, bright] = [0.0, 1.0].map(|x| Sphere::new([x, 0.0, 0.0], 0.2, LinearRgb::WHITE));
+    faint.surface = half;
+    let image = picture(&Scene::new(&[faint, bright]).unwrap(), &camera, film, &stars(ambient(None, 1)));
+    let ratio = light(&image, 45) / light(&image, 60);
+    assert!((ratio - 0.5).abs() < 0.01, "{ratio}");
 }
 
 #[test]
@@ -385,6 +421,7 @@ fn forged_pixels_are_violations() {
         ("plain", plain.clone()),
         ("lined", lined),
         ("shadows", lamp(DVec3::Y, 0.1, 4)),
+        ("stars", stars(plain.clone())),
         ("dense", dense(plain)),
         ("dense shadows", dense(lamp(DVec3::Y, 0.1, 9))),
     ] {

@@ -178,8 +178,8 @@ fn smooth(mut view: View) -> Result<(), Failed> {
     let outline = Some(Outline { depth: 1e-3, ..Outline::default() });
     let occlusion = Some(Occlusion::default());
     let sampling = Sampling { samples: 8, ..Sampling::default() };
-    for is_dense in [false, true] {
-        let studio = Studio { is_smooth: true, is_dense, occlusion, outline, ..Studio::default() };
+    for [is_dense, added_light] in [[false; 2], [true, false], [false, true]] {
+        let studio = Studio { is_smooth: true, is_dense, added_light, occlusion, outline, ..Studio::default() };
         view.settings = RenderSettings { integrator: Integrator::Studio(studio), sampling, ..RenderSettings::studio() };
         if !view.settings.is_smooth(&view.scene, view.camera.as_ref()) {
             return Ok(());

@@ -7,6 +7,7 @@ use pinhole_data::select::Selection;
 use pinhole_figure::color_by::ColorBy;
 use pinhole_figure::kind::KindSettings;
 use pinhole_figure::settings::Layer;
+use pinhole_figure::style::Style;
 
 /// The flag that stands for settings of a kind.
 pub(super) const KIND: &str = "--kind";
@@ -16,6 +17,8 @@ pub(super) const KIND: &str = "--kind";
 pub(crate) struct Chosen {
     /// The settings of the kind.
     layer: Layer,
+    /// The style, if it is not the usual one of data.
+    pub(super) style: Option<Style>,
     /// The kind of the camera that its flags are about.
     camera: Option<String>,
     /// The colours by kinds of spheres.
@@ -52,6 +55,6 @@ impl Chosen {
         let name = (!text.is_empty()).then(|| traits.kind.name());
         let notes = settings.notes.iter().map(|note| format!("{}; {}", note.what, note.remedies[0])).collect();
         let camera = settings.view.map(|view| view.camera);
-        Self { layer: Layer { flag: KIND, text }, camera, colors: None, name, notes }
+        Self { layer: Layer { flag: KIND, text }, style: settings.style, camera, colors: None, name, notes }
     }
 }

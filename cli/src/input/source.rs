@@ -164,7 +164,8 @@ impl Source {
 
     /// The scene that stands for a data file, with what was chosen for it.
     pub(super) fn scene_of_kind(&self, chosen: &Chosen) -> Result<SceneFile, Failure> {
-        Self { layers: chosen.layers(&self.layers), ..self.clone() }.scene_of_data()
+        let style = chosen.style.filter(|_| self.style == Style::Default).unwrap_or(self.style);
+        Self { layers: chosen.layers(&self.layers), style, ..self.clone() }.scene_of_data()
     }
 
     /// Reads the text of a scene file, with the flags.

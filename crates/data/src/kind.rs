@@ -13,6 +13,8 @@ use whole::{Whole, whole};
 /// A kind of data.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Kind {
+    /// Many points that have colours, but no radii.
+    Scan,
     /// Residues whose spheres are groups of atoms, such as beads of Martini, or CA alone.
     Coarse,
     /// At least three residues of protein or nucleic acid.
@@ -27,6 +29,8 @@ pub enum Kind {
     Liquid,
     /// Other atoms.
     Atoms,
+    /// Beads that are no atoms, with bonds.
+    Polymer,
     /// Spheres with different kinds in a cell, which are no atoms.
     Particles,
     /// Many points of which a few are far away.
@@ -37,7 +41,8 @@ pub enum Kind {
 
 impl Kind {
     /// All kinds, in the order in which they are tried.
-    pub const ALL: [Self; 10] = [
+    pub const ALL: [Self; 12] = [
+        Self::Scan,
         Self::Coarse,
         Self::Biomolecule,
         Self::Slab,
@@ -45,6 +50,7 @@ impl Kind {
         Self::Molecules,
         Self::Liquid,
         Self::Atoms,
+        Self::Polymer,
         Self::Particles,
         Self::Stars,
         Self::Plain,
@@ -54,6 +60,7 @@ impl Kind {
     #[must_use]
     pub fn name(self) -> &'static str {
         match self {
+            Self::Scan => "scan",
             Self::Coarse => "coarse",
             Self::Biomolecule => "biomolecule",
             Self::Slab => "slab",
@@ -61,6 +68,7 @@ impl Kind {
             Self::Molecules => "molecules",
             Self::Liquid => "liquid",
             Self::Atoms => "atoms",
+            Self::Polymer => "polymer",
             Self::Particles => "particles",
             Self::Stars => "stars",
             Self::Plain => "plain",
@@ -91,8 +99,9 @@ const MOLECULES: usize = 5_000;
 /// The most atoms that are searched for molecules.
 const SEARCHED: usize = 200_000;
 
-/// The fewest points that may be stars.
+/// The fewest points that may be stars, and those that may be a scan.
 const STARS: usize = 20_000;
+const SCAN: usize = 1_000;
 
 /// The fewest spheres of which a few may lie outside the picture, the most that are looked at for that, and the parts of all
 /// between which the others lie.
@@ -171,9 +180,17 @@ impl Traits {
         });
         let has_residues = count > 0 && 2 * residues >= count;
         let cell = PeriodicCell::of(data).filter(|_| !data.is_part_of_crystal).map(|cell| cell.edges);
-        if asked.is_none() && species.is_none() && !has_residues && cell.is_none() {
+        if asked.is_none() && species.is_none() && !has_residues && cell.is_none() && data.bonds.is_empty() {
             // Large data of this kind is common, so it takes no more than one look at each sphere.
-            let may_be_stars = count >= STARS && data.colors.is_none();
+            if count >= SCAN
+                && data.colors.is_some()
+                && let Some((radius, _)) = data.guessed_radius()
+            {
+                return Self { kind: Kind::Scan, spacing: 2.0 * radius, bulk: bulk(data, WITHIN), ..Self::plain() };
+            }
+            let radius = |index: usize| data.spheres.at(index)[3].to_bits();
+            let may_be_stars =
+                count >= STARS && data.colors.is_none() && (1..count).all(|index| radius(index) == radius(0));
             return match may_be_stars.then(|| bulk(data, STARS_WITHIN)).flatten() {
                 Some(bulk) => Self { kind: Kind::Stars, bulk: Some(bulk), ..Self::plain() },
                 None => Self { bulk: bulk(data, WITHIN), ..Self::plain() },
@@ -209,6 +226,8 @@ impl Traits {
                     Whole::Molecules if count <= MOLECULES => Kind::Molecules,
                     Whole::Molecules | Whole::Single => Kind::Liquid,
                 }
+            } else if !data.bonds.is_empty() && !has_residues {
+                Kind::Polymer
             } else if cell.is_some() || species.is_some() {
                 Kind::Particles
             } else {
@@ -321,88 +340,4 @@ fn bulk(data: &Dataset, [first, last]: [f64; 2]) -> Option<[DVec3; 2]> {
 }
 
 #[cfg(test)]
-mod tests {
-    use super::*;
-    use crate::load::{self, Options};
-
-    fn traits(name: &str, text: &str) -> Traits {
-        Traits::of(&load::from_bytes(text.as_bytes(), name, &Options::default()).unwrap(), None, None)
-    }
-
-    fn kind(name: &str, text: &str) -> Kind {
-        traits(name, text).kind
-    }
-
-    /// A file of atoms in a cubic cell, in which nothing repeats along z if `is_slab`.
-    fn cell(side: f64, height: f64, atoms: &[(&str, [f64; 3])]) -> String {
-        let rows = atoms.iter().map(|(species, [x, y, z])| format!("{species} {x} {y} {z}\n"));
-        let count = atoms.len();
-        format!(
-            "{count}\nLattice=\"{side} 0 0 0 {side} 0 0 0 {height}\" Properties=species:S:1:pos:R:3\n{}",
-            rows.collect::<String>()
-        )
-    }
-
-    const COPPER: [(&str, [f64; 3]); 4] =
-        [("Cu", [0.0; 3]), ("Cu", [0.0, 1.8, 1.8]), ("Cu", [1.8, 0.0, 1.8]), ("Cu", [1.8, 1.8, 0.0])];
-
-    #[test]
-    fn cells_of_atoms_are_crystals_slabs_or_molecules() {
-        assert_eq!(kind("a.xyz", &cell(3.6, 3.6, &COPPER)), Kind::Crystal);
-        assert_eq!(kind("a.xyz", &cell(2.6, 2.6, &COPPER[..1])), Kind::Crystal);
-        let slab = traits("a.xyz", &cell(3.6, 13.6, &COPPER));
-        assert_eq!((slab.kind, slab.up, slab.is_metal), (Kind::Slab, DVec3::Z, true));
-        let water = [("O", [0.0; 3]), ("H", [0.76, 0.59, 0.0]), ("H", [-0.76, 0.59, 0.0])];
-        assert_eq!(kind("a.xyz", &cell(9.0, 9.0, &water)), Kind::Molecules);
-        // A molecule across a face of the cell does not reach its own image, but a chain along an edge does.
-        let across = [("O", [0.0; 3]), ("H", [0.76, 0.59, 0.0]), ("H", [8.24, 0.59, 0.0])];
-        assert_eq!(kind("a.xyz", &cell(9.0, 5.0, &across)), Kind::Molecules);
-        let chain = [("C", [0.0; 3]), ("C", [1.3, 0.0, 0.0]), ("C", [2.6, 0.0, 0.0])];
-        assert_eq!(kind("a.xyz", &cell(3.9, 20.0, &chain)), Kind::Slab);
-        assert_eq!(kind("a.xyz", "2\n\nAr 0 0 0\nAr 0 0 4\n"), Kind::Liquid);
-    }
-
-    #[test]
-    fn beads_are_particles() {
-        let beads: String =
-            (0..10).map(|i| format!("{} {} 0 0\n", if i % 2 == 0 { "A" } else { "B" }, 3 * i)).collect();
-        let beads = traits("a.xyz", &format!("10\n\n{beads}"));
-        assert_eq!((beads.kind, beads.beads_lack), (Kind::Particles, [true; 2]));
-        // One atom that is a mark only is no bead.
-        let marked: String = (0..20).map(|i| format!("{} {} 0 0\n", if i == 3 { "X" } else { "C" }, i)).collect();
-        assert_eq!(traits("a.xyz", &format!("20\n\n{marked}")).beads_lack, [false; 2]);
-        assert_eq!(kind("a.xyz", "1\n\nO 0 0 0\n"), Kind::Plain);
-        assert_eq!(kind("a.xyz", "0\n\n"), Kind::Plain);
-    }
-
-    #[test]
-    fn residues_are_biomolecules_or_coarse() {
-        let atom = |number: usize, name: &str, residue: &str, chain: char, x: f64| {
-            format!("ATOM  {number:5}  {name:<3} {residue} {chain}{number:4}    {x:8.3}   0.000   0.000  1.00  0.00\n")
-        };
-        let chain = |spacing: f64| -> String {
-            (0..6).map(|i| atom(i + 1, "CA", "ALA", if i < 3 { 'A' } else { 'B' }, spacing * i as f64)).collect()
-        };
-        let fine = traits("a.pdb", &chain(1.5));
-        assert_eq!(
-            (fine.kind, fine.has_chains, fine.has_water, fine.has_ligands),
-            (Kind::Biomolecule, true, false, false)
-        );
-        assert_eq!(kind("a.pdb", &chain(3.8)), Kind::Coarse);
-        let with_water =
-            traits("a.pdb", &(chain(1.5) + &atom(9, "O", "HOH", 'A', 30.0) + &atom(10, "FE", "HEM", 'A', 40.0)));
-        assert_eq!((with_water.kind, with_water.has_water, with_water.has_ligands), (Kind::Biomolecule, true, true));
-    }
-
-    #[test]
-    fn a_few_that_are_far_away_are_not_framed() {
-        let rows = |far: f64| -> String {
-            let near = (0..2000).map(|i| format!("{},{},{}\n", i % 10, i / 10 % 10, i / 100));
-            near.chain([format!("{far},0,0\n")]).collect()
-        };
-        let traits = |far: f64| traits("a.csv", &format!("x,y,z\n{}", rows(far)));
-        assert_eq!(traits(12.0).bulk, None);
-        let [low, high] = traits(100.0).bulk.unwrap();
-        assert!((low - DVec3::splat(-0.95)).length() < 1e-9 && (high - DVec3::new(9.95, 9.95, 19.95)).length() < 1e-9);
-    }
-}
+mod tests;

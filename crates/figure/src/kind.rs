@@ -5,14 +5,15 @@ use pinhole::glam::DVec3;
 use pinhole_data::kind::{Kind, Traits};
 
 use crate::settings::keys_of;
+use crate::style::Style;
 
 /// Settings for a kind of data.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct KindSettings {
     /// The settings about data: keys of a scene file.
     pub data: String,
-    /// The background.
-    pub background: Option<&'static str>,
+    /// The style, with its background, if it is not the usual one of data.
+    pub style: Option<Style>,
     /// The view.
     pub view: Option<KindView>,
     /// Notes for the user about what is not drawn.
@@ -78,15 +79,14 @@ impl KindSettings {
         settings
     }
 
-    /// All settings: keys of a scene file.
+    /// All settings but the style: keys of a scene file.
     #[must_use]
     pub fn text(&self) -> String {
-        let background = self.background.map(|color| format!("background = \"{color}\"\n"));
         let view = self.view.as_ref().map(|KindView { camera, direction, up }| {
             let direction = direction.map(|direction| format!("direction = {:?}, ", direction.to_array()));
             format!("camera.{camera} = {{ {}up = {:?} }}\n", direction.unwrap_or_default(), up.to_array())
         });
-        [self.data.clone(), background.unwrap_or_default(), view.unwrap_or_default()].concat()
+        self.data.clone() + &view.unwrap_or_default()
     }
 
     fn add(&mut self, text: &str) {
@@ -111,8 +111,12 @@ impl KindSettings {
                 let touching = format!("{{ select = \"metal\", as = \"spacefill\", radius = {radius} }}");
                 self.add(&format!("show = [{{ as = \"balls\" }}, {touching}]"));
             }
-            Kind::Slab | Kind::Crystal | Kind::Molecules => self.add("show = [{ as = \"balls\" }]"),
+            Kind::Slab | Kind::Crystal | Kind::Molecules | Kind::Polymer => self.add("show = [{ as = \"balls\" }]"),
             Kind::Liquid => self.add("show = [{ as = \"spacefill\", scale = 0.7 }]"),
+            // Points at random places leave few holes in surfaces.
+            Kind::Scan => self.add(&format!("radius = {}", written(1.4 * traits.spacing))),
+            // Stars are points, as long as neighbours are pixels apart.
+            Kind::Stars => self.add("radius_scale = 0.3"),
             Kind::Atoms => {
                 let radius = written(0.5 * traits.spacing);
                 self.add(&format!("show = [{{ as = \"spacefill\", radius = {radius} }}]"));
@@ -147,15 +151,19 @@ impl KindSettings {
     }
 
     fn colors(&mut self, traits: &Traits, is_given: &impl Fn(&str) -> bool) {
-        if traits.kind == Kind::Stars && !is_given("background") && !is_given("color") && !is_given("color_by") {
-            self.background = Some("black");
-            self.add("color = \"white\"");
+        if !["style", "integrator", "background"].iter().any(|key| is_given(key)) {
+            self.style = match traits.kind {
+                Kind::Stars => Some(Style::Stars),
+                // Points have the colours of surfaces, and no light of their own.
+                Kind::Scan => Some(Style::Flat),
+                _ => None,
+            };
         }
         let are_chains = matches!(traits.kind, Kind::Biomolecule | Kind::Coarse) && traits.has_chains;
         if are_chains && !is_colored(is_given) {
             self.add("color_by = \"chain\"");
         }
-        if traits.kind == Kind::Particles && traits.beads_lack[0] && !is_colored(is_given) {
+        if matches!(traits.kind, Kind::Particles | Kind::Polymer) && traits.beads_lack[0] && !is_colored(is_given) {
             self.add("color_by = \"species\"");
         }
     }
@@ -179,10 +187,16 @@ impl KindView {
         let has_view = VIEWS.iter().any(|key| is_given(key));
         let (usual, direction, up) = match (traits.kind, traits.widest_view) {
             _ if is_placed => return None,
+            (Kind::Scan, _) if has_view => ("pinhole", None, DVec3::Z),
+            (Kind::Scan, _) => {
+                ("pinhole", Some(Viewpoint::Angles { azimuth: 30.0, elevation: 35.0 }.axes(DVec3::Z, 0.0)[0]), DVec3::Z)
+            }
             (Kind::Slab | Kind::Crystal, _) if has_view => ("orthographic", None, traits.up),
             (Kind::Slab, _) => ("orthographic", Some(from(0.0, 8.0)[0]), traits.up),
             (Kind::Crystal, _) => ("orthographic", Some(from(15.0, 10.0)[0]), traits.up),
-            (Kind::Liquid | Kind::Atoms | Kind::Particles, _) if traits.has_cell => ("pinhole", None, DVec3::Z),
+            (Kind::Liquid | Kind::Atoms | Kind::Polymer | Kind::Particles, _) if traits.has_cell => {
+                ("pinhole", None, DVec3::Z)
+            }
             (Kind::Molecules | Kind::Biomolecule | Kind::Coarse, Some([eye, up])) if !has_view => {
                 ("pinhole", Some(-eye), up)
             }
@@ -227,6 +241,16 @@ mod tests {
                 let settings = KindSettings::new(&traits, None, |_| false);
                 let text = format!("data = \"a.xyz\"\n{}", settings.text());
                 assert!(SceneFile::parse(&text).is_ok(), "{text}");
+            }
+        }
+    }
+
+    #[test]
+    fn stars_and_scans_have_styles() {
+        for (kind, style) in [(Kind::Stars, Style::Stars), (Kind::Scan, Style::Flat)] {
+            assert_eq!(KindSettings::new(&traits(kind), None, |_| false).style, Some(style));
+            for given in ["style", "integrator", "background"] {
+                assert_eq!(KindSettings::new(&traits(kind), None, |key| key == given).style, None, "{given}");
             }
         }
     }

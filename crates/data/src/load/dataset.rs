@@ -195,7 +195,7 @@ impl Dataset {
     }
 
     /// The radius of all spheres and the note about it, if the file gives none.
-    pub(super) fn guessed_radius(&self) -> Option<(f64, String)> {
+    pub(crate) fn guessed_radius(&self) -> Option<(f64, String)> {
         let note = self.notes.iter().find(|note| note.contains(NO_RADII))?;
         (!self.spheres.is_empty()).then(|| (self.spheres.at(0)[3], note.clone()))
     }

@@ -123,7 +123,14 @@ impl Table {
         loaded.notes = notes;
         let species = species.map(|labels| TableColumn::labels("species", labels));
         let columns = species.into_iter().chain(self.columns);
-        loaded.columns = columns.map(|TableColumn { name, values, .. }| Column { name, values }).collect();
+        let with_kinds = |TableColumn { name, values, .. }| match values {
+            ColumnValues::Numbers(numbers) if name.eq_ignore_ascii_case("type") => {
+                let values = kinds(&numbers).map_or(ColumnValues::Numbers(numbers), ColumnValues::Labels);
+                Column { name, values }
+            }
+            values => Column { name, values },
+        };
+        loaded.columns = columns.map(with_kinds).collect();
         Ok(loaded)
     }
 
@@ -293,6 +300,27 @@ impl TableColumn {
             ColumnValues::Labels(labels) => labels.indices.is_empty(),
         }
     }
+}
+
+/// The most types that are told apart.
+const MOST_TYPES: usize = 32;
+
+/// The types that whole numbers name; `None` for other numbers.
+fn kinds(numbers: &[f64]) -> Option<Labels> {
+    let mut names: Vec<f64> = Vec::new();
+    let index = |number: &f64| {
+        if number.fract() != 0.0 {
+            return None;
+        }
+        let found = names.iter().position(|name| name.total_cmp(number).is_eq());
+        let index = found.unwrap_or_else(|| {
+            names.push(*number);
+            names.len() - 1
+        });
+        (index < MOST_TYPES).then_some(index as u32)
+    };
+    let indices = numbers.iter().map(index).collect::<Option<_>>()?;
+    Some(Labels { names: names.iter().map(f64::to_string).collect(), indices })
 }
 
 fn set_radii(spheres: &mut SphereArray, radius: impl Fn(usize) -> f64) {

@@ -30,12 +30,14 @@ pub enum Style {
     Illustration,
     /// Path tracing under a soft sky and a sun, over a ground.
     Path,
+    /// Light that adds up, as that of stars, on black.
+    Stars,
 }
 
 impl Style {
     /// All styles.
     pub const ALL: &'static [Self] =
-        &[Self::Default, Self::Fast, Self::Flat, Self::Studio, Self::Illustration, Self::Path];
+        &[Self::Default, Self::Fast, Self::Flat, Self::Studio, Self::Illustration, Self::Path, Self::Stars];
 
     /// The name in scene files and flags.
     #[must_use]
@@ -47,6 +49,7 @@ impl Style {
             Self::Studio => "studio",
             Self::Illustration => "illustration",
             Self::Path => "path",
+            Self::Stars => "stars",
         }
     }
 
@@ -66,6 +69,7 @@ impl Style {
             Self::Studio => include_str!("studio.toml"),
             Self::Illustration => include_str!("illustration.toml"),
             Self::Path => include_str!("path.toml"),
+            Self::Stars => include_str!("stars.toml"),
         }
     }
 }

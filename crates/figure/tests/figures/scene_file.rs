@@ -243,6 +243,7 @@ fn a_studio_with_everything_is_read_as_it_was_written() {
         max_surfaces: 3,
         is_smooth: true,
         is_dense: true,
+        added_light: true,
         shadows: false,
     };
     let settings = RenderSettings { integrator: Integrator::Studio(studio), ..RenderSettings::studio() };
