@@ -10,7 +10,8 @@ use serde::Serialize;
 use crate::flags::settings::{SettingArgs, VIEW};
 use crate::input::{Input, Source, read};
 use crate::output::files::{check_not_inputs, check_writable, name_all, unnamed};
-use crate::proof::verify::report::{Scene, command_line};
+use crate::proof::scene_report::SceneReport;
+use crate::proof::verify::report::command_line;
 use crate::terminal::failure::Failure;
 use crate::terminal::progress::{self, answer, tell};
 use crate::terminal::text::json;
@@ -18,7 +19,6 @@ use crate::terminal::threads;
 use pinhole::geometry::ray::Ray;
 use pinhole::image::NO_ID;
 use pinhole::verify::conformance::{Answers, Conformance, ConformanceError, DepthKind, Field, Finding, Rays};
-use pinhole::verify::run_file::scene_sha256;
 use pinhole::verify::{Checker, MOST_UNDECIDED, Outcome};
 use pinhole_data::load::LoadError;
 use pinhole_data::load::npy::pixels::{self, Pixels};
@@ -39,7 +39,7 @@ use pinhole_figure::settings::flags::Group;
     same shape or (3,).\n\n\
     Exit codes: 0 no pixel needs more than the limit, and at most 1 % of the pixels are undecided; 1 the job failed; \
     2 wrong usage; 3 a pixel needs more than the limit; 4 none does, but more is undecided.\n\n\
-    JSON: `version`, `scene` (spheres, sha256), `picture` (width, height, camera; null for given rays; rays_off: camera, degrees, distance), `checked`, \
+    JSON: `version`, `scene` (spheres, cones, sha256), `picture` (width, height, camera; null for given rays; rays_off: camera, degrees, distance), `checked`, \
     `at_most`, `counts` (proved, undecided, violated), `decided_fraction`, `largest`, `histogram` (up_to, count), `worst` \
     (up to a hundred pixels: pixel, id, depth, outcome, k, margin, reason, exact_id, exact_distance, message), `outcome`, \
     `command`; what is infinite or a miss is null. New versions may add keys, but do not change these."
@@ -230,7 +230,7 @@ const LISTED: usize = 10;
 #[derive(Serialize)]
 pub(crate) struct Report {
     version: &'static str,
-    scene: Scene,
+    scene: SceneReport,
     picture: Picture,
     checked: Vec<&'static str>,
     at_most: f64,
@@ -333,7 +333,7 @@ impl Report {
         let count = |outcome: &Outcome| (outcome.name(), found.count(*outcome));
         Self {
             version: env!("CARGO_PKG_VERSION"),
-            scene: Scene { spheres: input.scene.len(), sha256: scene_sha256(&input.scene) },
+            scene: SceneReport::new(&input.scene),
             picture: Picture { width, height, camera: (!has_rays).then(|| input.camera.kind().name()), rays_off: None },
             checked: checked.into_iter().flatten().collect(),
             at_most: found.at_most,
@@ -353,16 +353,15 @@ impl Report {
     }
 
     pub(crate) fn table(&self) -> String {
-        let Scene { spheres, sha256 } = &self.scene;
         let Picture { width, height, camera, rays_off } = &self.picture;
         let mut rays = camera.map_or("given rays, taken as they are".to_owned(), |camera| format!("{camera} camera"));
         if let Some(RaysOff { camera, degrees, distance }) = rays_off {
             rays += &format!(", off those of the {camera} camera by up to {degrees:.2e} degrees and {distance:.2e}");
         }
         format!(
-            "scene: {spheres} spheres, {} bytes, sha256 {sha256}\npicture: {width}x{height}, {rays}\n\
+            "{}\npicture: {width}x{height}, {rays}\n\
              checked: {}\n{}{}\n",
-            16 * spheres,
+            self.scene.line(),
             self.checked.join(", "),
             self.table,
             self.outcome

@@ -5,6 +5,7 @@ pub(crate) mod certify;
 #[cfg(feature = "gpu")]
 pub(crate) mod quick_test;
 pub(crate) mod render_certified;
+mod scene_report;
 #[cfg(feature = "gpu")]
 pub(crate) mod self_test;
 pub(crate) mod verify;

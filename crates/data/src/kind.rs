@@ -223,6 +223,8 @@ impl Traits {
                     Whole::Solid if cell.is_some() && gap >= GAP => Kind::Slab,
                     Whole::Solid if cell.is_some() && count <= CRYSTAL => Kind::Crystal,
                     Whole::Solid => Kind::Atoms,
+                    // Metals touch, so that they have no bonds.
+                    Whole::Molecules if 2 * metals > count => Kind::Atoms,
                     Whole::Molecules if count <= MOLECULES => Kind::Molecules,
                     Whole::Molecules | Whole::Single => Kind::Liquid,
                 }

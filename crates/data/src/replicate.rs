@@ -16,6 +16,8 @@ pub enum Replicate {
     /// Spheres at a face, an edge or a corner of the cell are repeated at those opposite, as drawings of crystals show
     /// them. All spheres are moved into the cell, and the data does not repeat any more.
     Faces,
+    /// No sphere is repeated, but all are moved into the cell.
+    Wrap,
 }
 
 /// The most spheres that come out.
@@ -44,12 +46,15 @@ impl FromStr for Replicate {
         if text.eq_ignore_ascii_case("faces") {
             return Ok(Self::Faces);
         }
+        if text.eq_ignore_ascii_case("wrap") {
+            return Ok(Self::Wrap);
+        }
         let counts: Option<Vec<u32>> =
             text.split(['x', 'X', ',', ' ']).map(|part| part.parse().ok().filter(|count| *count > 0)).collect();
         match counts.as_deref() {
             Some(&[count]) => Ok(Self::Cells([count; 3])),
             Some(&[a, b, c]) => Ok(Self::Cells([a, b, c])),
-            _ => Err(ReplicateError("write the numbers of cells along the edges, such as 2x2x1, or faces")),
+            _ => Err(ReplicateError("write the numbers of cells along the edges, such as 2x2x1, or faces or wrap")),
         }
     }
 }
@@ -59,6 +64,7 @@ impl fmt::Display for Replicate {
         match self {
             Self::Cells([a, b, c]) => write!(f, "{a}x{b}x{c}"),
             Self::Faces => f.write_str("faces"),
+            Self::Wrap => f.write_str("wrap"),
         }
     }
 }
@@ -79,6 +85,10 @@ impl Replicate {
         match self {
             Self::Cells(counts) => cells(data, &cell, counts),
             Self::Faces => faces(data, &cell),
+            Self::Wrap => {
+                data.move_centers(|_, center| cell.moved(center, -cell.turns(center)));
+                Ok(())
+            }
         }
     }
 }
@@ -153,6 +163,9 @@ fn faces(data: &mut Dataset, cell: &PeriodicCell) -> Result<(), ReplicateError> 
     if indices.len() > MOST {
         return Err(ReplicateError("there would be more than 200 million spheres"));
     }
+    if !data.bonds.is_empty() {
+        data.notes.push("the bonds of the file are left out where atoms at faces are repeated".to_owned());
+    }
     data.repeat(&indices);
     data.move_centers(|index, center| centers.get(index).copied().unwrap_or(center));
     data.is_periodic = [false; 3];
@@ -168,6 +181,17 @@ mod tests {
         let text =
             "2\nLattice=\"4 0 0 1 4 0 0 0 4\" Properties=species:S:1:pos:R:3:q:R:1\nNa 0 0 0 1\nCl 2.5 2 3.9999 2\n";
         load::from_bytes(text.as_bytes(), "a.xyz", &Options::default()).unwrap()
+    }
+
+    #[test]
+    fn spheres_are_moved_into_the_cell() {
+        let text = "3\nLattice=\"4 0 0 1 4 0 0 0 4\" Properties=species:S:1:pos:R:3\nNa 5 1 1\nCl -1 2 3\nCl 1 1 1\n";
+        let mut data = load::from_bytes(text.as_bytes(), "a.xyz", &Options::default()).unwrap();
+        let replicate: Replicate = "wrap".parse().unwrap();
+        assert_eq!(replicate.to_string(), "wrap");
+        replicate.apply(&mut data).unwrap();
+        assert_eq!(centers(&data), [[1.0, 1.0, 1.0], [3.0, 2.0, 3.0], [1.0, 1.0, 1.0]]);
+        assert_eq!(data.is_periodic, [true; 3]);
     }
 
     fn centers(data: &Dataset) -> Vec<[f64; 3]> {

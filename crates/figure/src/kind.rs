@@ -41,8 +41,7 @@ pub struct KindNote {
 }
 
 /// The keys that say what is drawn of data. If one is given, the kind does not say it.
-const STRUCTURE: [&str; 8] =
-    ["bonds", "elements", "leave_out", "opacity_by", "radius", "radius_by", "radius_scale", "show"];
+const STRUCTURE: [&str; 7] = ["bonds", "elements", "leave_out", "opacity_by", "radius", "radius_by", "show"];
 
 /// A length with five digits.
 fn written(length: f64) -> String {
@@ -111,12 +110,14 @@ impl KindSettings {
                 let touching = format!("{{ select = \"metal\", as = \"spacefill\", radius = {radius} }}");
                 self.add(&format!("show = [{{ as = \"balls\" }}, {touching}]"));
             }
-            Kind::Slab | Kind::Crystal | Kind::Molecules | Kind::Polymer => self.add("show = [{ as = \"balls\" }]"),
+            // Beads nearly touch along a chain.
+            Kind::Polymer => self.add("show = [{ as = \"balls\", scale = 1.4 }]"),
+            Kind::Slab | Kind::Crystal | Kind::Molecules => self.add("show = [{ as = \"balls\" }]"),
             Kind::Liquid => self.add("show = [{ as = \"spacefill\", scale = 0.7 }]"),
             // Points at random places leave few holes in surfaces.
             Kind::Scan => self.add(&format!("radius = {}", written(1.4 * traits.spacing))),
             // Stars are points, as long as neighbours are pixels apart.
-            Kind::Stars => self.add("radius_scale = 0.3"),
+            Kind::Stars if !is_given("radius_scale") => self.add("radius_scale = 0.3"),
             Kind::Atoms => {
                 let radius = written(0.5 * traits.spacing);
                 self.add(&format!("show = [{{ as = \"spacefill\", radius = {radius} }}]"));
@@ -169,6 +170,11 @@ impl KindSettings {
     }
 
     fn focus(&mut self, traits: &Traits, is_given: &impl Fn(&str) -> bool) {
+        if traits.kind == Kind::Slab && !is_given("focus") {
+            // The empty layer may be wider than the slab.
+            self.add("focus = \"all\"");
+            return;
+        }
         let Some([low, high]) = traits.bulk.filter(|_| !is_given("focus")) else { return };
         let within = ["x", "y", "z"].iter().zip(low.to_array().into_iter().zip(high.to_array()));
         let within: Vec<String> =
@@ -192,7 +198,7 @@ impl KindView {
                 ("pinhole", Some(Viewpoint::Angles { azimuth: 30.0, elevation: 35.0 }.axes(DVec3::Z, 0.0)[0]), DVec3::Z)
             }
             (Kind::Slab | Kind::Crystal, _) if has_view => ("orthographic", None, traits.up),
-            (Kind::Slab, _) => ("orthographic", Some(from(0.0, 8.0)[0]), traits.up),
+            (Kind::Slab, _) => ("orthographic", Some(from(15.0, 10.0)[0]), traits.up),
             (Kind::Crystal, _) => ("orthographic", Some(from(15.0, 10.0)[0]), traits.up),
             (Kind::Liquid | Kind::Atoms | Kind::Polymer | Kind::Particles, _) if traits.has_cell => {
                 ("pinhole", None, DVec3::Z)
@@ -265,7 +271,7 @@ mod tests {
         let view = slab.view.unwrap();
         assert_eq!((view.camera.as_str(), view.up), ("pinhole", DVec3::new(0.0, 0.6, -0.8)));
         let above = -view.direction.unwrap().dot(view.up);
-        assert!((above - 8f64.to_radians().sin()).abs() < 1e-6, "{:?}", view.direction);
+        assert!((above - 10f64.to_radians().sin()).abs() < 1e-6, "{:?}", view.direction);
         let turned = KindSettings::new(&traits(Kind::Slab), None, |key| key == "view").view.unwrap();
         assert_eq!((turned.camera.as_str(), turned.direction), ("orthographic", None));
     }

@@ -70,7 +70,7 @@ pub(crate) const AFTER_HELP: &str = "The check covers the data on the device and
     they say little, or more than 1 % of the pixels that `render` gives differ from what exact arithmetic gives and are not \
     known to be legal.\n\n\
     JSON: `version`, `adapter` (name, backend, device_type, driver, driver_info, limits), `hearsay` (the keys that \
-    RUN says of itself, which nothing proves: whoever writes it can write any names), `scene` (spheres, sha256), `picture` (width, height, camera, y_axis, shading, structure), `counts` (decided, silhouette, tie, violation), \
+    RUN says of itself, which nothing proves: whoever writes it can write any names), `scene` (spheres, cones, sha256), `picture` (width, height, camera, y_axis, shading, structure), `counts` (decided, silhouette, tie, violation), \
     `decided_fraction`, `worst_depth` and `worst_normal` (as fractions of their bounds), `upload` (null, or what is \
     wrong), `violations` (the first hundred: pixel, stage, message), `open` (the first three ties and the first three silhouettes: \
     pixel, verdict, message), `paths` (only with the integrator `path`: paths, \

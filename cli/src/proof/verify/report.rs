@@ -4,12 +4,13 @@ use std::collections::BTreeMap;
 
 use serde::Serialize;
 
+use crate::proof::scene_report::SceneReport;
 use crate::render::device::AdapterReport;
 use crate::terminal::text::in_quotes;
 use pinhole::internals::text::{one_line, whole_line};
 use pinhole::verify::denoised::DenoiseCertificate;
 use pinhole::verify::finished::{FinishedCertificate, PixelVerdict};
-use pinhole::verify::run_file::{Run, scene_sha256};
+use pinhole::verify::run_file::Run;
 use pinhole::verify::{
     Certificate, Checker, Deviations, LitCertificate, LitOpen, LitShare, LitViolation, Outcome, Recording, StageCounts,
     UploadError, Verdict, Violation,
@@ -44,7 +45,7 @@ pub(crate) struct Report<'a> {
     pub(crate) adapter: Adapter<'a>,
     /// The keys whose values a run file says of itself, so that nothing proves them.
     hearsay: [&'static str; 4],
-    pub(crate) scene: Scene,
+    pub(crate) scene: SceneReport,
     pub(crate) picture: Picture,
     pub(crate) counts: BTreeMap<&'static str, usize>,
     pub(crate) decided_fraction: f64,
@@ -84,12 +85,6 @@ pub(crate) struct Adapter<'a> {
 }
 
 #[derive(Serialize)]
-pub(crate) struct Scene {
-    pub(crate) spheres: usize,
-    pub(crate) sha256: String,
-}
-
-#[derive(Serialize)]
 pub(crate) struct Picture {
     pub(crate) width: u32,
     pub(crate) height: u32,
@@ -114,7 +109,7 @@ impl<'a> Report<'a> {
             version: one_line(&provenance.version),
             adapter: Adapter { adapter: AdapterReport::of_run(provenance), limits: &provenance.limits },
             hearsay: ["adapter", "command", "picture.structure", "version"],
-            scene: Scene { spheres: scene.len(), sha256: scene_sha256(scene) },
+            scene: SceneReport::new(scene),
             picture: Picture {
                 width: recording.film.width(),
                 height: recording.film.height(),
@@ -180,17 +175,16 @@ impl<'a> Report<'a> {
 
     /// Returns the report as text. Entries from a run file are on lines of their own.
     pub(crate) fn table(&self) -> String {
-        let Scene { spheres, sha256 } = &self.scene;
         let Picture { width, height, camera, structure, .. } = &self.picture;
         let adapter = one_line(&self.adapter.adapter.line());
         let light = self.light().map_or(String::new(), LightReport::lines);
         let denoiser = self.denoiser.as_ref().map_or(String::new(), DenoiserReport::line);
         let rendered = self.rendered.as_ref().map_or(String::new(), RenderedReport::line);
         format!(
-            "adapter: {adapter} (hearsay)\nscene: {spheres} spheres, {} bytes, sha256 {sha256}\n\
+            "adapter: {adapter} (hearsay)\n{}\n\
              picture: {width}x{height}, {camera} camera\n\
              structure: {structure}\n{}\n{light}{denoiser}{rendered}{}\n",
-            16 * spheres,
+            self.scene.line(),
             self.certificate,
             self.verdict()
         )

@@ -10,6 +10,7 @@ use strsim::normalized_levenshtein;
 
 use self::asked::Asked;
 use self::hints::Hint;
+use self::names::{SAME, SHORT, frames_of};
 use crate::command_line::Arguments;
 use crate::terminal::failure::Failure;
 use crate::terminal::text::in_quotes;
@@ -20,47 +21,16 @@ use pinhole_figure::settings::flags::{Flag, Value};
 
 mod asked;
 mod hints;
-
-/// Other names of flags.
-const SAME: &[(&str, &str)] = &[
-    ("alpha", "opacity"),
-    ("bg", "background"),
-    ("cell", "box"),
-    ("colorbar", "legend"),
-    ("colormap", "cmap"),
-    ("center", "focus"),
-    ("centre", "focus"),
-    ("colour", "color"),
-    ("colour-by", "color-by"),
-    ("map", "cmap"),
-    ("only", "select"),
-    ("out", "output"),
-    ("repeat", "replicate"),
-    ("resolution", "size"),
-    ("scale", "radius-scale"),
-    ("supercell", "replicate"),
-    ("unit-cell", "box"),
-];
-
-/// Flags that are short for a value of another one.
-const SHORT: &[(&str, &str)] = &[
-    ("clip", "select"),
-    ("every", "frames"),
-    ("exclude", "select"),
-    ("height", "size"),
-    ("ortho", "camera"),
-    ("slice", "select"),
-    ("title", "label"),
-    ("vmax", "range"),
-    ("vmin", "range"),
-    ("width", "size"),
-];
+mod names;
 
 /// Flags with a selection, which has blanks.
 const SELECTIONS: [&str; 6] = ["select", "focus", "show", "hide", "ghost", "define"];
 
 /// Endings of pictures, which a shell puts among the files of a pattern.
 const PICTURES: [&str; 6] = ["apng", "exr", "gif", "json", "mp4", "png"];
+
+/// The width of outlines if nobody says it, in pixels.
+const LINES: &str = "1.5";
 
 /// Frequent colors, to tell a misspelt one from a column.
 const COLORS: [&str; 13] = [
@@ -117,6 +87,7 @@ fn is_for(command: &Command, word: &OsStr) -> bool {
             name.starts_with("no-")
                 || command.get_arguments().any(|arg| arg.get_long() == Some(name) || is_short(arg, &text))
                 || SAME.iter().chain(SHORT).any(is_other)
+                || !matches!(hints::of(name, true), Hint::None)
         }
         None => text.contains(['.', '/', '\\']) || Path::new(word).is_file(),
     }
@@ -168,6 +139,14 @@ impl Reader<'_> {
     /// Takes a word that is no long flag: a file, or a flag of one letter with its value.
     fn other(&mut self, word: OsString) {
         let text = word.to_string_lossy().into_owned();
+        if let Some((file, flag, frames)) = frames_of(&text)
+            && self.find(flag).is_some()
+        {
+            self.plain.push(file.into());
+            self.files.push(self.plain.len() - 1);
+            self.give(flag, frames);
+            return;
+        }
         self.plain.push(word);
         let needs_value = |arg: &&Arg| is_short(arg, &text) && arg.get_action().takes_values();
         if self.command.get_arguments().any(|arg| needs_value(&arg)) {
@@ -191,7 +170,9 @@ impl Reader<'_> {
         let is_switch = |flag: &Flag| {
             (matches!(flag.value, Value::Switch) || flag.name() == "box") && self.find(flag.name()).is_some()
         };
-        if let Some(flag) = name.strip_prefix("no-").and_then(Flag::of_name).filter(|flag| is_switch(flag)) {
+        let switched =
+            name.strip_prefix("no-").map(|name| SAME.iter().find(|(other, _)| *other == name).map_or(name, |of| of.1));
+        if let Some(flag) = switched.and_then(Flag::of_name).filter(|flag| is_switch(flag)) {
             self.give(flag.name(), "false");
             return Ok(());
         }
@@ -208,10 +189,6 @@ impl Reader<'_> {
                 }
             };
         };
-        if name == "ortho" {
-            self.give(of, "orthographic");
-            return Ok(());
-        }
         let value = value.map(str::to_owned).or_else(|| self.rest.pop_front()?.into_string().ok());
         let value = value.ok_or_else(|| Failure::usage(format!("--{name} needs a value")))?;
         match name {
@@ -229,14 +206,16 @@ impl Reader<'_> {
     /// Takes a flag of the command, with its value.
     fn own(&mut self, name: &str, value: Option<&str>) -> Result<(), Failure> {
         let may_be_value = |word: &OsStr, arg: &Arg| {
-            let has_hyphen = word.as_encoded_bytes().starts_with(b"-") && word != "-";
+            let begins = |with: &[u8]| word.as_encoded_bytes().starts_with(with);
+            let has_hyphen = begins(b"-") && word != "-";
             match arg.is_require_equals_set() {
                 true => !has_hyphen && !Path::new(word).is_file(),
-                false => !has_hyphen || arg.is_allow_hyphen_values_set(),
+                false => !has_hyphen || arg.is_allow_hyphen_values_set() && !begins(b"--"),
             }
         };
         let arg = self.find(name).filter(|arg| arg.get_action().takes_values());
         let is_doubtful = value.is_none() && arg.is_some_and(Arg::is_require_equals_set);
+        let needs_value = arg.is_some_and(|arg| !arg.is_require_equals_set());
         let follows = arg.is_some_and(|arg| self.rest.front().is_some_and(|word| may_be_value(word, arg)));
         let value = match value {
             Some(value) => Some(value.into()),
@@ -245,7 +224,13 @@ impl Reader<'_> {
         };
         let flag = format!("--{name}");
         let Some(value) = value else {
-            self.plain.push(flag.into());
+            match name {
+                "outline" => self.give(name, LINES),
+                _ if needs_value && !self.rest.is_empty() => {
+                    return Err(Failure::usage(format!("{flag} needs a value; `pinhole render --help` says which")));
+                }
+                _ => self.plain.push(flag.into()),
+            }
             return Ok(());
         };
         let Some(text) = value.to_str() else {
@@ -267,13 +252,26 @@ impl Reader<'_> {
         // A name that is not a color is a column, unless it is nearly one.
         let is_color =
             || css::color(&text).is_ok() || COLORS.iter().any(|color| normalized_levenshtein(color, &text) > 0.7);
+        let is_of_show = ShowStyle::of_name(&text).is_some() || text.eq_ignore_ascii_case("cpk");
         let is_column = name == "color" && self.find("color-by").is_some() && !is_color();
         let name = match name {
             "color" if is_column => "color-by",
             // A style of other programs is one of what is drawn.
-            "style" if ShowStyle::of_name(&text).is_some() && self.find("show").is_some() => "show",
+            "style" if is_of_show && self.find("show").is_some() => "show",
+            // The camera of some programs is called a view.
+            "view" if text == "perspective" => {
+                self.give("camera", "pinhole");
+                return Ok(());
+            }
             name => name,
         };
+        // What is off is as if it were not asked for, but for a cell, which kinds of data may draw.
+        if is_doubtful && ["off", "none", "no"].contains(&text.as_str()) {
+            if name == "box" {
+                self.give(name, "false");
+            }
+            return Ok(());
+        }
         if name == "background" && text == "transparent" && self.find("transparent").is_some() {
             self.plain.push("--transparent".into());
             return Ok(());

@@ -38,6 +38,7 @@ fn cells_of_atoms_are_crystals_slabs_or_molecules() {
     let chain = [("C", [0.0; 3]), ("C", [1.3, 0.0, 0.0]), ("C", [2.6, 0.0, 0.0])];
     assert_eq!(kind("a.xyz", &cell(3.9, 20.0, &chain)), Kind::Slab);
     assert_eq!(kind("a.xyz", "2\n\nAr 0 0 0\nAr 0 0 4\n"), Kind::Liquid);
+    assert_eq!(kind("a.xyz", "3\n\nAu 0 0 0\nAu 2.9 0 0\nAu 0 2.9 0\n"), Kind::Atoms);
 }
 
 #[test]

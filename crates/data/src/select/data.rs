@@ -14,7 +14,7 @@ use super::words::{all_words, nearest};
 use crate::added::bonded_pairs;
 use crate::column::{ColumnError, NamedColumn, column};
 use crate::keys::{Key, key_of};
-use crate::load::{ColumnValues, Dataset, Labels};
+use crate::load::{ColumnValues, Dataset, Labels, element_symbol};
 use pinhole::internals::text::{listed, one_line, shortened};
 
 /// The most notes about one selection.
@@ -206,6 +206,11 @@ impl<'a> Data<'a> {
             return self.error(word.at, format!("`{name}` is a column; compare it with a value, such as {name} > 0"));
         }
         let columns = self.loaded.columns.iter().map(|column| column.name.as_str());
+        if self.loaded.labels("species").is_some()
+            && let Some(symbol) = element_symbol(&word.text)
+        {
+            return self.error(word.at, format!("`{name}` is no column, class or name; write element {symbol}"));
+        }
         let nearest = nearest(&word.text, all_words().chain(columns));
         let remedy = nearest.map_or(String::new(), |nearest| format!("; did you mean {}?", one_line(nearest)));
         let columns = self.loaded.columns.iter().map(|column| shortened(&column.name));

@@ -67,11 +67,11 @@ pub enum ShowStyle {
 /// The names of styles. The first of each is the one in lists.
 const NAMES: [(ShowStyle, &[&str]); 8] = [
     (ShowStyle::Spacefill, &["spacefill", "vdw", "spheres"]),
-    (ShowStyle::Balls, &["balls", "ball-and-stick", "ball+stick", "balls-and-sticks"]),
+    (ShowStyle::Balls, &["balls", "ball-and-stick", "ball+stick", "balls-and-sticks", "dynamicbonds"]),
     (ShowStyle::Sticks, &["sticks", "licorice", "stick"]),
     (ShowStyle::Lines, &["lines", "line", "wireframe"]),
     (ShowStyle::Points, &["points", "dots"]),
-    (ShowStyle::Trace, &["trace", "tube", "putty", "cartoon", "ribbon"]),
+    (ShowStyle::Trace, &["trace", "tube", "putty", "cartoon", "newcartoon", "ribbon", "newribbons"]),
     (ShowStyle::Ghost, &["ghost", "faint", "context"]),
     (ShowStyle::Hidden, &["hidden", "hide", "none"]),
 ];
