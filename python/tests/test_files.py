@@ -50,6 +50,23 @@ def test_a_trajectory_is_a_sequence(tmp_path):
 
 
 @pytest.mark.filterwarnings("ignore::pinhole.Note")
+def test_several_files_are_a_trajectory(tmp_path):
+    for number in (9, 10, 100):
+        (tmp_path / f"a{number}.xyz").write_text(WATER.replace("0.76", str(number)))
+    for path, numbers in [("a*.xyz", (9, 10, 100)), ("a{9,100}.xyz", (9, 100))]:
+        assert [frame.positions[1][0] for frame in ph.read(tmp_path / path)] == list(numbers)
+    paths = [tmp_path / f"a{number}.xyz" for number in (100, 10)]
+    assert [frame.positions[1][0] for frame in ph.read(paths)] == [10, 100]
+    assert ph.read(tmp_path / "a*.xyz", frame=-1).positions[1][0] == 100
+    assert len(ph.read(paths[:1])) == 3
+    with pytest.raises(ph.InputError, match="their names differ in one number alone"):
+        ph.read([*paths, tmp_path / "b.xyz"])
+    with pytest.raises(ph.Error, match="a number in the place of the"):
+        ph.read(tmp_path / "b*.xyz")
+    with pytest.raises(ph.InputError, match="there is no frame -4"):
+        ph.read(tmp_path / "a*.xyz", frame=-4)
+
+
 def test_the_program_sees_the_same_file(program, tmp_path):
     (tmp_path / "t.extxyz").write_text(frames(3))
     wanted = program("t.extxyz", "--frame", "1", "--bonds", "--box", "--size", "80x60")

@@ -138,6 +138,22 @@ def test_kinds_of_data(program, tmp_path, name, text, kind):
 
 
 @pytest.mark.filterwarnings("ignore::pinhole.Note")
+def test_scans_and_stars_have_styles_of_their_own(program, tmp_path):
+    scan = "x,y,z,r,g,b\n" + "".join(f"{i % 40},{i // 40},{i % 7},{i % 250},90,9\n" for i in range(1600))
+    stars = "x,y,z\n" + "".join(f"{i % 31 if i % 100 else i},{i * i % 37},{i % 41}\n" for i in range(20000))
+    for name, text, kind in [("scan.csv", scan, "scan"), ("stars.csv", stars, "stars")]:
+        (tmp_path / name).write_text(text)
+        read = ph.read(tmp_path / name)
+        assert read.kind == kind
+        size = ("--size", "64x48", "--backend", "cpu")
+        usual = read.render((64, 48), backend="cpu")._repr_png_()
+        assert usual == program(name, *size)
+        for flags, settings in [(("--style", "default"), {"style": "default"}), (("--background", "red"), {"background": "red"})]:
+            other = read.render((64, 48), backend="cpu", **settings)._repr_png_()
+            assert other == program(name, *size, *flags) and other != usual
+
+
+@pytest.mark.filterwarnings("ignore::pinhole.Note")
 def test_arrays_of_atoms_are_drawn_like_their_file(program, tmp_path):
     (tmp_path / "salt.xyz").write_text(cubic(5.6, 5.6, SALT))
     elements, *places = zip(*SALT, strict=True)

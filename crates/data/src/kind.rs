@@ -108,7 +108,7 @@ const SCAN: usize = 1_000;
 const FRAMED: usize = 1_000;
 const SAMPLE: usize = 1 << 17;
 const WITHIN: [f64; 2] = [0.005, 0.995];
-const STARS_WITHIN: [f64; 2] = [0.05, 0.95];
+const STARS_WITHIN: [f64; 2] = [0.02, 0.98];
 
 /// Facts about data, by which its kind is chosen.
 #[derive(Clone, Debug, PartialEq)]

@@ -5,6 +5,7 @@ use std::str::FromStr;
 
 use glam::DVec3;
 
+use crate::added::bonded_pairs;
 use crate::cell::PeriodicCell;
 use crate::load::Dataset;
 
@@ -18,6 +19,8 @@ pub enum Replicate {
     Faces,
     /// No sphere is repeated, but all are moved into the cell.
     Wrap,
+    /// No sphere is repeated, but molecules that faces of the cell cut are made whole, with their middle in the cell.
+    Whole,
 }
 
 /// The most spheres that come out.
@@ -49,12 +52,17 @@ impl FromStr for Replicate {
         if text.eq_ignore_ascii_case("wrap") {
             return Ok(Self::Wrap);
         }
+        if text.eq_ignore_ascii_case("whole") {
+            return Ok(Self::Whole);
+        }
         let counts: Option<Vec<u32>> =
             text.split(['x', 'X', ',', ' ']).map(|part| part.parse().ok().filter(|count| *count > 0)).collect();
         match counts.as_deref() {
             Some(&[count]) => Ok(Self::Cells([count; 3])),
             Some(&[a, b, c]) => Ok(Self::Cells([a, b, c])),
-            _ => Err(ReplicateError("write the numbers of cells along the edges, such as 2x2x1, or faces or wrap")),
+            _ => Err(ReplicateError(
+                "write the numbers of cells along the edges, such as 2x2x1, or faces, wrap or whole",
+            )),
         }
     }
 }
@@ -65,6 +73,7 @@ impl fmt::Display for Replicate {
             Self::Cells([a, b, c]) => write!(f, "{a}x{b}x{c}"),
             Self::Faces => f.write_str("faces"),
             Self::Wrap => f.write_str("wrap"),
+            Self::Whole => f.write_str("whole"),
         }
     }
 }
@@ -89,6 +98,7 @@ impl Replicate {
                 data.move_centers(|_, center| cell.moved(center, -cell.turns(center)));
                 Ok(())
             }
+            Self::Whole => whole(data, &cell),
         }
     }
 }
@@ -172,6 +182,40 @@ fn faces(data: &mut Dataset, cell: &PeriodicCell) -> Result<(), ReplicateError> 
     Ok(())
 }
 
+/// Moves spheres to their images beside others to which bonds join them.
+fn whole(data: &mut Dataset, cell: &PeriodicCell) -> Result<(), ReplicateError> {
+    let pairs =
+        bonded_pairs(data).map_err(|_| ReplicateError("nothing says which spheres are bonded; leave it out"))?;
+    let mut links: Vec<[u32; 2]> = pairs.into_iter().flat_map(|[a, b]| [[a, b], [b, a]]).collect();
+    links.sort_unstable();
+    let mut centers: Vec<DVec3> = (0..data.spheres.len()).map(|index| data.center(index)).collect();
+    let mut is_placed = vec![false; centers.len()];
+    for start in 0..centers.len() {
+        let (mut molecule, mut next) = (Vec::new(), vec![start as u32]);
+        if is_placed[start] {
+            continue;
+        }
+        is_placed[start] = true;
+        while let Some(from) = next.pop() {
+            molecule.push(from);
+            let first = links.partition_point(|[end, _]| *end < from);
+            for [_, to] in links[first..].iter().take_while(|[end, _]| *end == from) {
+                if !std::mem::replace(&mut is_placed[*to as usize], true) {
+                    let turns = cell.turns_to_nearest(centers[from as usize], centers[*to as usize]);
+                    centers[*to as usize] = cell.moved(centers[*to as usize], turns);
+                    next.push(*to);
+                }
+            }
+        }
+        let middle = molecule.iter().map(|index| centers[*index as usize]).sum::<DVec3>() / molecule.len() as f64;
+        for index in molecule {
+            centers[index as usize] = cell.moved(centers[index as usize], -cell.turns(middle));
+        }
+    }
+    data.move_centers(|index, center| centers.get(index).copied().unwrap_or(center));
+    Ok(())
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -192,6 +236,17 @@ mod tests {
         replicate.apply(&mut data).unwrap();
         assert_eq!(centers(&data), [[1.0, 1.0, 1.0], [3.0, 2.0, 3.0], [1.0, 1.0, 1.0]]);
         assert_eq!(data.is_periodic, [true; 3]);
+    }
+
+    #[test]
+    fn molecules_are_made_whole() {
+        let water = "4\nLattice=\"9 0 0 0 9 0 0 0 9\" Properties=species:S:1:pos:R:3\nO 8.9 1 8.9\nH 0.8 1 8.9\nH 8.9 1 0.7\nAr -4 0 9\n";
+        let mut data = load::from_bytes(water.as_bytes(), "a.xyz", &Options::default()).unwrap();
+        "whole".parse::<Replicate>().unwrap().apply(&mut data).unwrap();
+        let wanted = [[-0.1, 1.0, -0.1], [0.8, 1.0, -0.1], [-0.1, 1.0, 0.7], [5.0, 0.0, 0.0]];
+        for (found, wanted) in centers(&data).iter().zip(wanted) {
+            assert!((DVec3::from(*found) - DVec3::from(wanted)).length() < 1e-9, "{found:?}");
+        }
     }
 
     fn centers(data: &Dataset) -> Vec<[f64; 3]> {

@@ -97,8 +97,13 @@ impl KindSettings {
         if traits.has_cell && !is_given("box") && traits.kind != Kind::Biomolecule {
             self.add("box = true");
         }
-        if traits.kind == Kind::Crystal && traits.has_cell && !is_given("replicate") {
-            self.add("replicate = \"faces\"");
+        if traits.has_cell && !is_given("replicate") {
+            match traits.kind {
+                Kind::Crystal => self.add("replicate = \"faces\""),
+                // A chain in pieces cannot be followed.
+                Kind::Polymer => self.add("replicate = \"whole\""),
+                _ => {}
+            }
         }
         if STRUCTURE.iter().any(|key| is_given(key)) {
             return;

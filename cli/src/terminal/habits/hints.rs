@@ -27,7 +27,6 @@ const SAID: &[(&[&str], &str)] = &[
     ),
     (&["no-outline", "no-outlines"], "--style fast has none; styles in scene files may leave out [studio.outline]"),
     (&["crop", "trim", "autocrop"], "--margin 0 leaves no space around; --focus EXPRESSION frames a part"),
-    (&["unwrap"], "molecules stay as they are in the file; --wrap moves all spheres into the cell"),
     (&["point-size", "point-radius"], "--radius sets the radius of all spheres, and --radius-scale a factor"),
     (
         &["radii", "atomic-radii", "radius-by-type", "radii-by-type"],
@@ -101,6 +100,7 @@ pub(super) fn of(name: &str, has_show: bool) -> Hint {
         "no-water" | "no-waters" => Hint::Flag("hide", "water".to_owned()),
         "no-hydrogens" | "no-hydrogen" | "no-h" => Hint::Flag("hide", "hydrogen".to_owned()),
         "wrap" => Hint::Flag("replicate", "wrap".to_owned()),
+        "unwrap" | "whole" => Hint::Flag("replicate", "whole".to_owned()),
         "boundary-atoms" | "periodic-images" => Hint::Flag("replicate", "faces".to_owned()),
         "no-bonds" => Hint::Flag("show", "spacefill".to_owned()),
         "orthographic" | "parallel" | "ortho" => Hint::Flag("camera", "orthographic".to_owned()),

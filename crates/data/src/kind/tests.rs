@@ -70,7 +70,7 @@ fn beads_with_bonds_are_polymers() {
 fn many_points_are_scans_or_stars() {
     let rows = |count: usize, header: &str, more: &str| -> String {
         // A few are far away.
-        let place = |i: usize| if i.is_multiple_of(15) { i } else { i % 30 };
+        let place = |i: usize| if i.is_multiple_of(100) { i } else { i % 30 };
         (0..count)
             .fold(format!("x,y,z{header}\n"), |text, i| text + &format!("{},{},{}{more}\n", place(i), i % 37, i % 41))
     };

@@ -44,7 +44,7 @@ fn format_of(path: &Path, options: &Options, source: &mut Source) -> Result<&'st
 }
 
 /// Reads a file of spheres that is in memory. `name` is the name of the file, or empty. Only its extension is used, to
-/// choose the format as [`open`] does. The topology in the options is the only file that is opened.
+/// choose the format as [`open`](super::open) does. The topology in the options is the only file that is opened.
 ///
 /// # Errors
 /// Returns an error if the bytes cannot be read, their format is not known, or an option does not apply to it.

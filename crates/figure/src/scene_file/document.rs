@@ -70,7 +70,8 @@ pub(crate) struct Document {
     /// Spheres to leave out: values by the names of their columns.
     pub(super) leave_out: Option<BTreeMap<String, Vec<String>>>,
     /// How many cells of periodic data there are along each edge, such as `2x2x1`; or `faces`, which repeats spheres at a
-    /// face of the cell at the opposite one; or `wrap`, which only moves all into the cell.
+    /// face of the cell at the opposite one; or `wrap`, which only moves all into the cell; or
+    /// `whole`, which puts molecules together that faces cut.
     pub(super) replicate: Option<String>,
     /// The kind of a data file that no scene file describes, which `--kind` names. It applies to nothing else.
     pub(super) kind: Option<String>,
