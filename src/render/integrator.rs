@@ -161,7 +161,8 @@ pub struct Studio {
     /// True if spheres shine through each other and are not lit, as stars. The light of a pixel is the sum over all spheres
     /// of their colour, times their opacity, times the part of the pixel that their disk covers, in linear light. It is
     /// exposed so that one in ten pixels with light is brighter than 1/3, and compressed, so that none is brighter than 1.
-    /// Choose a dark background. Lenses have no effect on it. Nothing is random.
+    /// Choose a dark background. Lenses have no effect on it. Nothing is random. Pictures in frames of host programs do not
+    /// have it: they light spheres.
     pub added_light: bool,
     /// The largest number of translucent surfaces that are visible behind each other: 1 to 64.
     pub max_surfaces: u32,

@@ -198,10 +198,8 @@ impl KindView {
         let has_view = VIEWS.iter().any(|key| is_given(key));
         let (usual, direction, up) = match (traits.kind, traits.widest_view) {
             _ if is_placed => return None,
-            (Kind::Scan, _) if has_view => ("pinhole", None, DVec3::Z),
-            (Kind::Scan, _) => {
-                ("pinhole", Some(Viewpoint::Angles { azimuth: 30.0, elevation: 35.0 }.axes(DVec3::Z, 0.0)[0]), DVec3::Z)
-            }
+            (Kind::Scan, _) if has_view => ("pinhole", None, traits.up),
+            (Kind::Scan, _) => ("pinhole", Some(from(30.0, 35.0)[0]), traits.up),
             (Kind::Slab | Kind::Crystal, _) if has_view => ("orthographic", None, traits.up),
             (Kind::Slab, _) => ("orthographic", Some(from(15.0, 10.0)[0]), traits.up),
             (Kind::Crystal, _) => ("orthographic", Some(from(15.0, 10.0)[0]), traits.up),

@@ -87,8 +87,8 @@ impl LivePicture {
     /// of the film, and the usage `STORAGE_BINDING`. Missing pipelines are built.
     ///
     /// # Errors
-    /// [`GpuError::NotLive`] unless the settings are a studio, all spheres are opaque and the scene is not divided into
-    /// bricks; the errors of [`RenderSettings::check`]; [`GpuError::Target`] if a target is not as described;
+    /// [`GpuError::NotLive`] unless the settings are a studio without added light, all spheres are opaque and the scene is not
+    /// divided into bricks; the errors of [`RenderSettings::check`]; [`GpuError::Target`] if a target is not as described;
     /// [`GpuError::Limit`] if the picture is too large; an error if the device has no memory left.
     pub async fn new(
         renderer: &LitRenderer,
@@ -308,6 +308,9 @@ fn live_key<'a>(
     let Integrator::Studio(studio) = &mut few.integrator else {
         return Err(GpuError::NotLive { needs: "the integrator `studio`" });
     };
+    if studio.added_light {
+        return Err(GpuError::NotLive { needs: "spheres that are lit, and no added light" });
+    }
     studio.occlusion.iter_mut().for_each(|occlusion| occlusion.samples = OCCLUSION_RAYS);
     if !scene.appearance().is_opaque() {
         return Err(GpuError::NotLive { needs: "opaque spheres" });
