@@ -9,7 +9,7 @@
 //! So a picture depends only on shapes, view, settings and ids, and does not depend on
 //! the device that found them.
 //!
-//! Where [light adds up](crate::render::Studio::added_light), spheres have the light of [`added::AddedLight`] in the place of spots.
+//! If [light adds up](crate::render::Studio::added_light), spheres have the light of [`added::AddedLight`] and no spots.
 
 use glam::DVec3;
 

@@ -150,9 +150,11 @@ impl Source {
         let sky_image = sky_file.map(|file| self.resolve(file));
         let data = self.keys_of_data(&file);
         let data_file = data.as_ref().map(|data| self.data_path(data));
-        let data_files = data_file.map_or_else(Vec::new, |path| match FileSet::of(&path) {
-            Ok(Some(set)) => set.files().to_vec(),
-            _ => vec![path],
+        // A folder is not searched again for each frame of a movie.
+        let data_files = data_file.map_or_else(Vec::new, |path| match (&self.frames, FileSet::is_one(&path)) {
+            (Some(frames), _) => frames.files(),
+            (None, true) => FileSet::of(&path).ok().flatten().map_or_else(Vec::new, |set| set.files().to_vec()),
+            (None, false) => vec![path],
         });
         let topology = data.as_ref().and_then(|data| self.options(&file, data).topology);
         let scene_file = (self.format == Format::Scene).then(|| self.path.clone());
@@ -249,7 +251,8 @@ impl Source {
         let path = self.data_path(&data);
         let in_scene = || self.in_scene();
         let named = data.format.as_deref().and_then(load::Format::of_name);
-        let Some(format) = self.data_format().or(named).or_else(|| data_format(&path)) else {
+        let of_frames = self.frames.as_ref().map(|frames| frames.format);
+        let Some(format) = self.data_format().or(named).or(of_frames).or_else(|| data_format(&path)) else {
             let problem = if let Err(error) = FileSet::of(&path) {
                 data::named(&path, error)
             } else if extension(&path).as_deref() == Some("toml") {

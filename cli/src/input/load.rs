@@ -69,7 +69,7 @@ impl Source {
         let count = file.len();
         let note =
             file.problem().map(|problem| format!("{}: after the {count} complete frames: {problem}", path.display()));
-        self.frames = Some(Arc::new(OpenFrames { path, file: Mutex::new(file) }));
+        self.frames = Some(Arc::new(OpenFrames { path, format, file: Mutex::new(file) }));
         Ok(Ok(FoundFrames { count, note }))
     }
 

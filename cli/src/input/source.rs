@@ -259,6 +259,7 @@ pub(crate) fn default_color() -> LinearRgb {
 /// A file whose frames were found.
 pub(crate) struct OpenFrames {
     pub(crate) path: PathBuf,
+    pub(crate) format: &'static load::Format,
     pub(crate) file: Mutex<Trajectory>,
 }
 
@@ -270,6 +271,11 @@ pub(crate) struct FoundFrames {
 }
 
 impl OpenFrames {
+    /// The files of the frames.
+    pub(crate) fn files(&self) -> Vec<PathBuf> {
+        self.file.lock().unwrap_or_else(PoisonError::into_inner).files().map(Path::to_path_buf).collect()
+    }
+
     /// Reads the frame that the options name, or else the first.
     pub(crate) fn read(&self, options: &DataOptions) -> Result<Dataset> {
         let mut file = self.file.lock().unwrap_or_else(PoisonError::into_inner);

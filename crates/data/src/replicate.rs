@@ -191,11 +191,10 @@ fn whole(data: &mut Dataset, cell: &PeriodicCell) -> Result<(), ReplicateError> 
     let mut centers: Vec<DVec3> = (0..data.spheres.len()).map(|index| data.center(index)).collect();
     let mut is_placed = vec![false; centers.len()];
     for start in 0..centers.len() {
-        let (mut molecule, mut next) = (Vec::new(), vec![start as u32]);
-        if is_placed[start] {
+        if std::mem::replace(&mut is_placed[start], true) {
             continue;
         }
-        is_placed[start] = true;
+        let (mut molecule, mut next) = (Vec::new(), vec![start as u32]);
         while let Some(from) = next.pop() {
             molecule.push(from);
             let first = links.partition_point(|[end, _]| *end < from);

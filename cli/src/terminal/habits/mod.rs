@@ -10,7 +10,7 @@ use strsim::normalized_levenshtein;
 
 use self::asked::Asked;
 use self::hints::Hint;
-use self::names::{SAME, SHORT, frames_of};
+use self::names::{SAME, SHORT, frames_of, same};
 use crate::command_line::Arguments;
 use crate::terminal::failure::Failure;
 use crate::terminal::text::in_quotes;
@@ -162,16 +162,14 @@ impl Reader<'_> {
 
     fn flag(&mut self, text: &str) -> Result<(), Failure> {
         let (name, value) = text.split_once('=').map_or((text, None), |(name, value)| (name, Some(value)));
-        let other = SAME.iter().find(|(other, _)| *other == name).map(|(_, name)| *name);
-        let name = if self.find(name).is_some() { name } else { other.unwrap_or(name) };
+        let name = if self.find(name).is_some() { name } else { same(name) };
         if self.find(name).is_some() {
             return self.own(name, value);
         }
         let is_switch = |flag: &Flag| {
             (matches!(flag.value, Value::Switch) || flag.name() == "box") && self.find(flag.name()).is_some()
         };
-        let switched =
-            name.strip_prefix("no-").map(|name| SAME.iter().find(|(other, _)| *other == name).map_or(name, |of| of.1));
+        let switched = name.strip_prefix("no-").map(same);
         if let Some(flag) = switched.and_then(Flag::of_name).filter(|flag| is_switch(flag)) {
             self.give(flag.name(), "false");
             return Ok(());

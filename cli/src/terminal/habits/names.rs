@@ -63,6 +63,11 @@ pub(super) const SHORT: &[(&str, &str)] = &[
     ("width", "size"),
 ];
 
+/// The name of a flag for a name that it may have elsewhere, or the same name.
+pub(super) fn same(name: &str) -> &str {
+    SAME.iter().find(|(other, _)| *other == name).map_or(name, |(_, name)| name)
+}
+
 /// A file with frames after an `@`, as ASE writes them: `a.xyz@-1` is `a.xyz --frame=-1`, and `a.xyz@:` all frames. Returns the
 /// file, the flag and its value.
 pub(super) fn frames_of(word: &str) -> Option<(&str, &'static str, &str)> {

@@ -12,15 +12,13 @@ use super::format::{Format, FrameIndex, Frames, Options, ReadMethod, read_from_m
 use super::source::{Source, start_of};
 use super::topology::Topology;
 
-/// Reads one file.
+/// Reads one file, or its first frame.
 pub(super) fn open_file(path: &Path, options: &Options) -> Result<Dataset, LoadError> {
     let failed = |error: io::Error| LoadError::from(error).in_file(path);
     let mut source = Source::open(path).map_err(failed)?;
     let format = format_of(path, options, &mut source).map_err(|error| error.in_file(path))?;
     if format.has_frames() {
-        let wanted = options.frame.unwrap_or_default();
-        let file = OpenFile::find(path, &options.clone().with_format(format), Some(wanted))?;
-        return file.into_frame(wanted);
+        return OpenFile::find(path, &options.clone().with_format(format), Some(0))?.into_frame(0);
     }
     if let Source::Plain(reader) = &source
         && let Some(rows) = FileRows::find(format, reader.get_ref(), options).map_err(|error| error.in_file(path))?
@@ -158,11 +156,6 @@ impl OpenFile {
     /// Reads one frame, counted from 0, and checks that the frames are followed by the end of the file or by another
     /// frame, because a wrong number of atoms shows there. A fault after complete frames of binary data is only a note.
     pub(super) fn into_frame(mut self, index: usize) -> Result<Dataset, LoadError> {
-        if index >= self.len()
-            && let Some(problem) = self.index.problem.take()
-        {
-            return Err(problem);
-        }
         let loaded = self.frame(index)?;
         self.index.with_problem(loaded)
     }

@@ -30,7 +30,7 @@ pub fn open(path: impl AsRef<Path>, options: &Options) -> Result<Dataset, LoadEr
 /// memory.
 #[derive(Debug)]
 pub struct Trajectory {
-    /// Whether one name stands for the files.
+    /// Is true if one name stands for the files.
     is_set: bool,
     files: Vec<FileFrames>,
     options: Options,
@@ -45,7 +45,7 @@ pub struct Trajectory {
 #[derive(Debug)]
 struct FileFrames {
     path: PathBuf,
-    /// Whether the file is of a format that has frames. Others are one frame of several files.
+    /// Is true if the file is of a format that has frames. Others are one frame of several files.
     has_frames: bool,
     /// The number of frames of the files before.
     before: usize,
@@ -143,6 +143,11 @@ impl Trajectory {
     #[must_use]
     pub fn is_empty(&self) -> bool {
         self.len() == 0
+    }
+
+    /// The files, in the order of their frames.
+    pub fn files(&self) -> impl Iterator<Item = &Path> {
+        self.files.iter().map(|file| file.path.as_path())
     }
 
     /// The error after the last complete frame, if there is one.

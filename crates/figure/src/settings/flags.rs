@@ -267,7 +267,8 @@ flags! {
             "Draw the spheres for which an expression is true faintly";
         "--replicate" "replicate", Text, "AxBxC",
             "Repeat the spheres of a periodic cell this many times along its edges, such as 2x2x1; `faces` repeats those at a \
-             face of the cell at the opposite one, `wrap` only moves all into the cell, and `whole` puts molecules together that faces cut";
+             face of the cell at the opposite one, `wrap` only moves all into the cell, and `whole` puts molecules \
+             together that faces cut";
         "--focus" "focus", Text, "EXPRESSION",
             "Frame only the spheres for which an expression is true, whatever else is drawn";
         "--box" "box", Words(words::cell), "WIDTH" (""),

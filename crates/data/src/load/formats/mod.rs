@@ -294,14 +294,17 @@ impl Format {
     /// # Errors
     /// Returns an error if the first bytes are needed and cannot be read.
     pub fn of_path(path: &Path) -> io::Result<Option<&'static Self>> {
+        let format = Self::of_file_name(path);
+        if format.is_some() {
+            return Ok(format);
+        }
         if let Ok(Some(set)) = FileSet::of(path)
             && let Some(first) = set.files().first()
         {
             return Self::of_path(first);
         }
-        let format = Self::of_file_name(path);
-        if format.is_some() || !path.is_file() {
-            return Ok(format);
+        if !path.is_file() {
+            return Ok(None);
         }
         Ok(Self::of_content(&Source::open(path)?.start()?))
     }
