@@ -110,7 +110,7 @@ def _name_of(path: str | os.PathLike[str] | Sequence[str | os.PathLike[str]]) ->
         return paths[0]
     name = FileData.name_of(paths)
     if name is None:
-        raise InputError("path: several files are frames if their names differ in one number alone; read others one by one")
+        raise InputError("path: names of several files cannot have commas or braces; rename them")
     return name
 
 
@@ -132,6 +132,7 @@ def read(
     ----------
     path
         The file. Several files are frames, in the order of the numbers in which their names differ: ``"dump.*"``, or a list.
+        Others are put together: ``["protein.pdb", "ligand.sdf"]``, or ``"{protein.pdb,ligand.sdf}"``.
     topology
         The file that describes the spheres of a trajectory, for formats that have positions alone. It may also come first.
     frame

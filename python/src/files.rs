@@ -42,13 +42,14 @@ impl FileData {
         columns: Vec<String>,
     ) -> PyResult<Self> {
         Ok(worker::run(py, None, move |_| {
-            FileSet::of(path.as_ref()).map_err(|error| Fault::reading(&path, &error))?;
+            let set = FileSet::of(path.as_ref()).map_err(|error| Fault::reading(&path, &error))?;
+            let are_together = set.is_some_and(|set| !set.are_frames());
             let format = format_of(&path, format.as_deref())?;
             let mut options = Options::default().with_format(format).with_columns(columns);
             (options.radius, options.topology) = (radius, topology);
             format.check(&options).map_err(Fault::input)?;
             let fault = |error: LoadError| Fault::reading(&path, &error);
-            let has_frames = format.has_frames() || FileSet::is_one(path.as_ref());
+            let has_frames = (format.has_frames() || FileSet::is_one(path.as_ref())) && !are_together;
             let found = has_frames.then(|| Trajectory::open(&path, &options)).transpose().map_err(fault)?;
             let count = found.as_ref().map_or(1, Trajectory::len);
             let problem = found.as_ref().and_then(Trajectory::problem).map(ToString::to_string);
@@ -56,10 +57,11 @@ impl FileData {
         })?)
     }
 
-    /// The name for several files whose names differ in a number.
+    /// The name for several files: frames if their names differ in a number, and others together.
     #[staticmethod]
     fn name_of(paths: Vec<PathBuf>) -> Option<String> {
-        FileSet::name_of(&paths).map(|name| name.to_string_lossy().into_owned())
+        let name = FileSet::name_of(&paths).or_else(|| FileSet::name_together(&paths))?;
+        Some(name.to_string_lossy().into_owned())
     }
 
     /// The number of complete frames.

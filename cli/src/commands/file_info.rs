@@ -79,7 +79,7 @@ fn report(args: &FileArgs, path: &Path) -> Result<Report, Failure> {
 
 fn of_data(path: &Path, format: &'static Format, options: &DataOptions) -> Result<Report> {
     let is_file = !read_file::is_standard_input(path);
-    let has_frames = data::has_frames(path, format);
+    let has_frames = data::has_frames(path, format) && !data::are_together(path);
     let (loaded, frames, problem) = if has_frames && is_file {
         let mut trajectory = data::trajectory(path, format, options)?;
         let problem = trajectory.problem().map(ToString::to_string);

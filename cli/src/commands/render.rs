@@ -44,9 +44,11 @@ fn default_output(args: &RenderArgs) -> Result<PathBuf, Failure> {
     if args.frames.asks_for_several() || args.frames.of_writing().is_some() || args.stereo == Some(Stereo::TwoFiles) {
         return Err(no_name("several pictures need a name; add -o f%04d.png, or -o movie.mp4"));
     }
-    let plain = without_ending(input);
+    let together = FileSet::of(input).ok().flatten().filter(|set| !set.are_frames());
+    let named = together.as_ref().and_then(|set| set.files().first()).unwrap_or(input);
+    let plain = without_ending(named);
     let name = plain.file_stem().filter(|_| !is_standard_input(input));
-    let of_set = name.and_then(OsStr::to_str).filter(|_| FileSet::is_one(input));
+    let of_set = name.and_then(OsStr::to_str).filter(|_| FileSet::is_one(named));
     // The numbers of several files are left out.
     let of_set = of_set.and_then(|name| name.split(['*', '{']).next());
     let of_set = of_set.map(|name| name.trim_end_matches(['.', '-', '_'])).map(OsStr::new);

@@ -16,6 +16,7 @@ use crate::terminal::{profile, progress};
 use pinhole::image::color::LinearRgb;
 use pinhole::scene::Scene;
 use pinhole_data::added::ArrowKey;
+use pinhole_data::kind::Traits;
 use pinhole_data::load::{self, Column, ConeSet, Dataset, FileSet};
 use pinhole_data::select::KeptSpheres;
 use pinhole_figure::color_by::ColorKey;
@@ -65,7 +66,7 @@ impl DataPlace {
     /// Returns true if there are frames after the first one.
     fn has_more(&self, first: &Dataset) -> bool {
         match FileSet::of(&self.path) {
-            Ok(Some(set)) => set.files().len() > 1,
+            Ok(Some(set)) => set.are_frames() && set.files().len() > 1,
             _ => self.format.has_frames() && first.frames != Some(1),
         }
     }
@@ -92,7 +93,8 @@ impl Source {
 
     /// The spheres that stand for all of a file of bricks.
     fn contents_of_bricks(&self, bricks: &BrickFile) -> Result<Contents, Failure> {
-        let file = self.scene_of_data()?;
+        let plain = Chosen::of_traits(&Traits::plain(!bricks.has_colors()), &self.given);
+        let file = self.scene_of_kind(&plain)?;
         let of_columns = Group::Structure as u32 | Group::Color as u32;
         if let Some(flag) = self.given.first_in(of_columns) {
             return Err(Failure::usage(format!(

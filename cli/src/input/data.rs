@@ -6,7 +6,7 @@ use anyhow::{Context, Error, Result};
 use clap::builder::{PossibleValue, PossibleValuesParser, TypedValueParser};
 
 use crate::flags::settings::Given;
-use crate::input::read_file::{check_regular, is_standard_input, open, read as read_bytes};
+use crate::input::read_file::{check_regular, data_format, is_standard_input, open, read as read_bytes};
 use crate::terminal::failure::Failure;
 use crate::terminal::memory;
 use pinhole_data::load::{
@@ -74,6 +74,14 @@ fn is_of_atoms(format: &Format) -> bool {
 /// Reads spheres from a file. Of a file with frames only the one that is asked for is in memory. Errors and notes get the
 /// path in front.
 pub(crate) fn read(path: &Path, format: &'static Format, options: &DataOptions) -> Result<Dataset> {
+    if are_together(path)
+        && options.frame.is_none()
+        && let Some(set) = FileSet::of(path).map_err(|error| named(path, error))?
+    {
+        let read_one = |file| Ok((file, read(file, data_format(file).unwrap_or(format), options)?));
+        let parts = set.files().iter().map(PathBuf::as_path).map(read_one);
+        return Dataset::joined(parts.collect::<Result<Vec<_>>>()?).map_err(|error| named(path, error));
+    }
     let mut loaded = match has_frames(path, format) && !is_standard_input(path) {
         true => read_frame(path, format, options)?,
         false => read_whole(path, format, options)?,
@@ -85,6 +93,11 @@ pub(crate) fn read(path: &Path, format: &'static Format, options: &DataOptions) 
 /// Returns true if a file of this format can have frames, or a name stands for several files.
 pub(crate) fn has_frames(path: &Path, format: &Format) -> bool {
     format.has_frames() || FileSet::is_one(path)
+}
+
+/// Returns true if a name stands for several files that are no frames of one trajectory.
+pub(crate) fn are_together(path: &Path) -> bool {
+    FileSet::of(path).is_ok_and(|set| set.is_some_and(|set| !set.are_frames()))
 }
 
 /// Gives all spheres the radius that is asked for, and puts the path before notes.

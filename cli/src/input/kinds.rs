@@ -46,7 +46,12 @@ impl Chosen {
         let named = given.get("kind").and_then(Kind::of_name);
         let mut traits = Traits::of(data, select, named);
         traits.bulk = traits.bulk.filter(|_| !is_movie);
-        let settings = KindSettings::new(&traits, given.get("camera"), |key| match key {
+        Self::of_traits(&traits, given)
+    }
+
+    /// The choices for data with these traits.
+    pub(super) fn of_traits(traits: &Traits, given: &Given) -> Self {
+        let settings = KindSettings::new(traits, given.get("camera"), |key| match key {
             // What is hidden or faint is so in what the kind draws.
             "show" => given.get("show").is_some(),
             key => given.has_key(key),

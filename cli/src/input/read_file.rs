@@ -101,16 +101,20 @@ pub(crate) enum Format {
 impl Format {
     /// Returns the format for the extension of a path, or the failure of a file that is missing or of another kind.
     pub(crate) fn of(path: &Path) -> Result<Self, Failure> {
-        if let Some(set) = FileSet::of(path).with_context(|| path.display().to_string())?
-            && let Some(first) = set.files().first()
-        {
-            return match Self::of(first)? {
-                Self::Data(format) => Ok(Self::Data(format)),
+        if let Some(set) = FileSet::of(path).with_context(|| path.display().to_string())? {
+            let data = set.files().iter().map(|file| match Self::of(file)? {
+                Self::Data(format) => Ok(format),
                 _ => Err(Failure::usage(format!(
-                    "{}: several files together are frames of data; name one file",
-                    path.display()
+                    "{}: several files are seen together only if they are data; name one file",
+                    file.display()
                 ))),
-            };
+            });
+            // Frames are looked at when it is their turn.
+            let looked_at = if set.are_frames() { 1 } else { set.files().len() };
+            let formats = data.take(looked_at).collect::<Result<Vec<_>, Failure>>()?;
+            if let Some(first) = formats.first() {
+                return Ok(Self::Data(first));
+            }
         }
         Self::of_name(path).map_err(|wrong| match is_standard_input(path) {
             true => Failure::Usage(wrong),

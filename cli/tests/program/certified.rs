@@ -112,6 +112,8 @@ fn forged_pictures_with_light_are_not_proved() {
         ("scene.toml", "--style path --samples 4 --denoise=false"),
         ("scene.toml", "--style path --samples 4"),
     ] {
+        // From here the value of the one sample is decided.
+        let flags = if scene == "data.csv" { format!("{flags} --up 0,1,0") } else { flags.to_owned() };
         folder
             .run(&format!("render {scene} -o a.png --certify {flags} --size 48x36 --backend cpu --quiet"))
             .succeeded();

@@ -142,7 +142,7 @@ fn a_selection_decides_what_is_seen_and_counted() {
     let folder = folder();
     let (notes, line) = said(&folder, "row.xyz; --kind; plain; --select; q >= 0 and species == C; --color-by; q");
     assert_eq!(notes, "note: colors show `q` from 0.5 to 3");
-    assert!(line.starts_with("row.xyz: kept 2 of 4 atoms; --style fast"), "{line}");
+    assert!(line.starts_with("row.xyz: kept 2 of 4 atoms; --kind plain --style fast"), "{line}");
     // The camera frames the kept spheres, so this is the picture of a file with no others.
     let kept = decode(&folder.read("out.png"));
     let alone = Folder::with(&[("row.xyz", "2\nProperties=species:S:1:pos:R:3:q:R:1\nC 4 0 0 0.5\nC 5.5 0 0 3\n")]);

@@ -59,8 +59,29 @@ fn files_whose_names_differ_in_a_number_are_frames() {
     let run = folder.run("s.*.xyz --backend cpu --size 40x20").succeeded();
     assert!(run.stderr.contains("the first of several frames") && run.stderr.contains("wrote s.png"), "{}", run.stderr);
     folder.refuses(&format!("{all} s.png -o d.gif"), 2, "s.png: this is a picture, not a frame; quote the name");
-    folder.refuses("s.0.xyz a.xyz -o d.gif", 2, "one file is rendered at a time, but for frames");
+    folder.refuses("s.0.xyz s.png -o d.gif", 2, "s.png: only files of data");
     folder.refuses("none.*.xyz -o d.gif", 1, "a number in the place of the *");
+}
+
+#[test]
+fn other_files_are_seen_together() {
+    let folder = folder();
+    for (name, x) in [("one.xyz", 0), ("two.xyz", 5)] {
+        std::fs::write(folder.path(name), format!("1\n\nO {x} 0 0\n")).unwrap();
+    }
+    std::fs::write(folder.path("both.xyz"), "2\n\nO 0 0 0\nO 5 0 0\n").unwrap();
+    // The picture has the name of the first.
+    folder.run(&format!("one.xyz two.xyz {SMALL}")).succeeded();
+    folder.run(&format!("both.xyz -o both.png {SMALL}")).succeeded();
+    assert_same(&folder, ["one.png", "both.png"]);
+    std::fs::write(folder.path("scene.toml"), "data = '{one.xyz,two.xyz}'\n").unwrap();
+    let by_file = format!("--color-by file --kind plain {SMALL}");
+    folder.run(&format!("one.xyz two.xyz -o c.png {by_file}")).succeeded();
+    folder.run(&format!("scene.toml -o d.png {SMALL}")).succeeded();
+    assert_ne!(folder.read("c.png"), folder.read("one.png"));
+    folder.run(&format!("one.xyz two.xyz -o e%d.png {SMALL}")).succeeded();
+    assert_ne!(folder.read("e0.png"), folder.read("e1.png"));
+    folder.refuses(&format!("one.xyz missing.xyz {SMALL}"), 2, "missing.xyz: there is no such file");
 }
 
 #[test]

@@ -58,8 +58,8 @@ fn the_same_spheres_in_every_format() {
         "a.npz",
         "xyz.npy --radius 1",
         "a.bin --format raw-f32x4",
-        "a.npy --color #cccccc",
-        "a.npy --fov 30 --view 30,20 --up 0,1,0 --camera pinhole",
+        "a.npy --color #4c86b8",
+        "a.npy --fov 30 --view 30,20 --up 0,0,1 --camera pinhole",
     ] {
         assert_eq!(picture(&folder, arguments), expected, "{arguments}");
     }
@@ -78,7 +78,8 @@ fn the_same_spheres_in_every_format() {
         std::fs::write(folder.path(name), scene).unwrap();
     }
     // A scene file has its own light and view.
-    let expected = picture(&folder, "a.npy --style fast --direction 0,0,-1");
+    let gray = "--color #cccccc --up 0,1,0";
+    let expected = picture(&folder, &format!("a.npy {gray} --style fast --direction 0,0,-1"));
     let second = npy("<f4", false, "(1, 4)", &ROWS[1].map(f32::to_le_bytes).concat());
     std::fs::write(folder.path("b.npz"), zip(&[("x.npy", &second)], false)).unwrap();
     for arguments in ["1.toml", "2.toml", "3.toml", "4.toml --radius 1", "5.toml"] {
@@ -102,8 +103,8 @@ fn a_camera_on_the_command_line() {
         let scene = format!("style = 'default'\ndata = 'a.npy'\n{pinhole}{keys}");
         std::fs::write(folder.path(&format!("{name}.toml")), scene).unwrap();
         let expected = picture(&folder, &format!("{name}.toml"));
-        assert_eq!(picture(&folder, &format!("a.npy {flags}")), expected, "{flags}");
-        assert_ne!(picture(&folder, "a.npy"), expected);
+        assert_eq!(picture(&folder, &format!("a.npy --color #ccc {flags}")), expected, "{flags}");
+        assert_ne!(picture(&folder, "a.npy --color #ccc"), expected);
         // Flags replace the whole camera of a scene.
         assert_eq!(picture(&folder, &format!("fov.toml {flags}")), expected, "{flags}");
     }
@@ -111,7 +112,7 @@ fn a_camera_on_the_command_line() {
                  half_extent = [6, 4]\n";
     std::fs::write(folder.path("parallel.toml"), scene).unwrap();
     let flags = "--camera orthographic --eye 0,0,-5 --direction 0,0,1 --half-extent 6,4";
-    assert_eq!(picture(&folder, &format!("a.npy {flags}")), picture(&folder, "parallel.toml"));
+    assert_eq!(picture(&folder, &format!("a.npy --color #ccc {flags}")), picture(&folder, "parallel.toml"));
 }
 
 #[test]
@@ -182,7 +183,7 @@ fn frames_of_a_trajectory() {
     let scene = "style = 'default'\ndata = 'two.xyz'\nframe = 1\n[film]\nwidth = 32\nheight = 32\n";
     let folder = Folder::with(&[("two.xyz", &text), ("scene.toml", scene)]);
     let render = |arguments: &str| {
-        folder.run(&format!("render {arguments} --size 32x32 --backend cpu --view iso")).succeeded();
+        folder.run(&format!("render {arguments} --size 32x32 --backend cpu --view iso --up 0,1,0")).succeeded();
     };
     render("two.xyz -o first.png --kind plain");
     render("two.xyz -o second.png --frame 1 --kind plain");
@@ -273,8 +274,10 @@ fn the_content_shows_the_format_where_the_name_does_not() {
         ("water", WATER),
         ("scene.toml", "style = \"default\"\ndata = \"water.dat\"\n[camera.pinhole]\ndirection = [0, -1, 0]\n"),
     ]);
-    folder.run("render water.xyz -o wanted.png --kind plain --backend cpu --size 20x16").succeeded();
-    for (file, plain) in [("water.dat", "--kind plain"), ("water", "--kind plain"), ("scene.toml", "")] {
+    folder.run("render water.xyz -o wanted.png --kind plain --up 0,1,0 --backend cpu --size 20x16").succeeded();
+    for (file, plain) in
+        [("water.dat", "--kind plain --up 0,1,0"), ("water", "--kind plain --up 0,1,0"), ("scene.toml", "")]
+    {
         folder.run(&format!("render {file} {plain} -o a.png --backend cpu --size 20x16")).succeeded();
         assert_eq!(folder.read("a.png"), folder.read("wanted.png"), "{file}");
     }

@@ -86,13 +86,14 @@ pub fn column<'a>(name: &str, spheres: &SphereArray, columns: &'a [Column]) -> R
         let lengths = x.iter().zip(y).zip(z).map(|((x, y), z)| x.hypot(*y).hypot(*z));
         return Ok(NamedColumn { name: format!("|{vector}|"), values: owned(lengths.collect()) });
     }
-    // A word for what the data calls otherwise, such as `element`. Words with a dot are only those of selections.
-    let key = key_of(name).filter(|_| !name.ends_with('.'));
-    if let Some(column) = key.and_then(|key| key.columns.iter().find_map(|other| named(other, columns))) {
-        check_count(column, spheres)?;
-        return Ok(NamedColumn { name: column.name.clone(), values: Cow::Borrowed(&column.values) });
+    // A word for what the data calls otherwise, such as `element` or `Position.X`. Words with a dot at the end are only
+    // those of selections.
+    let key = key_of(&name.replace(' ', "")).filter(|_| !name.ends_with('.'));
+    let is_found = |other: &&&str| named(other, columns).is_some() || BUILT_IN.contains(other);
+    match key.and_then(|key| key.columns.iter().find(is_found)) {
+        Some(other) if !other.eq_ignore_ascii_case(name) => column(other, spheres, columns),
+        _ => Err(unknown(name, columns)),
     }
-    Err(unknown(name, columns))
 }
 
 /// A vector of each sphere: its name, spelled as in the data, and its three components.

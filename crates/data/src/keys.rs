@@ -43,9 +43,9 @@ pub(crate) const KEYS: &[Key] = &[
     key("mol", &["molecule", "moleculeidentifier"], &["mol", "molecule"]),
     key("fragment", &["frag"], &[]),
     key("numbonds", &["coordination"], &["numbonds"]),
-    key("x", &["position.x"], &["x"]),
-    key("y", &["position.y"], &["y"]),
-    key("z", &["position.z"], &["z"]),
+    key("x", &["position.x", "position_x"], &["x"]),
+    key("y", &["position.y", "position_y"], &["y"]),
+    key("z", &["position.z", "position_z"], &["z"]),
 ];
 
 /// The key that a word names, in upper or lower case.

@@ -110,6 +110,11 @@ const SAMPLE: usize = 1 << 17;
 const WITHIN: [f64; 2] = [0.005, 0.995];
 const STARS_WITHIN: [f64; 2] = [0.02, 0.98];
 
+/// The part of the longest side that a side of flat data has at most, and the part of the diagonal of the box that a point
+/// needs as its radius to be seen.
+const FLAT: f64 = 1e-6;
+const SEEN: f64 = 1.0 / 250.0;
+
 /// Facts about data, by which its kind is chosen.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Traits {
@@ -139,11 +144,18 @@ pub struct Traits {
     /// Two corners of the box in which nearly all centres lie, if some lie so far away that all would be small in a
     /// picture.
     pub bulk: Option<[DVec3; 2]>,
+    /// Returns true if neither the data nor elements in it give colours.
+    pub is_uncolored: bool,
+    /// A radius with which few points can be seen, if they have none and about touch where they are small.
+    pub seen_radius: Option<f64>,
+    /// The axis along which the data has no extent, if there is just one.
+    pub flat: Option<usize>,
 }
 
 impl Traits {
-    /// The traits of data of which nobody wants to know any.
-    fn plain() -> Self {
+    /// The traits of data without anything but spheres.
+    #[must_use]
+    pub fn plain(is_uncolored: bool) -> Self {
         Self {
             kind: Kind::Plain,
             has_cell: false,
@@ -156,6 +168,9 @@ impl Traits {
             beads_lack: [false; 2],
             widest_view: None,
             bulk: None,
+            is_uncolored,
+            seen_radius: None,
+            flat: None,
         }
     }
 
@@ -163,8 +178,9 @@ impl Traits {
     /// is not looked at.
     #[must_use]
     pub fn of(data: &Dataset, select: Option<&Selection>, asked: Option<Kind>) -> Self {
+        let plain = || Self::plain(data.colors.is_none() && data.labels("species").is_none());
         if asked == Some(Kind::Plain) {
-            return Self::plain();
+            return plain();
         }
         if let Some(select) = select {
             let mut part = data.clone();
@@ -186,14 +202,23 @@ impl Traits {
                 && data.colors.is_some()
                 && let Some((radius, _)) = data.guessed_radius()
             {
-                return Self { kind: Kind::Scan, spacing: 2.0 * radius, bulk: bulk(data, WITHIN), ..Self::plain() };
+                return Self { kind: Kind::Scan, spacing: 2.0 * radius, bulk: bulk(data, WITHIN), ..plain() };
             }
             let radius = |index: usize| data.spheres.at(index)[3].to_bits();
             let may_be_stars =
                 count >= STARS && data.colors.is_none() && (1..count).all(|index| radius(index) == radius(0));
             return match may_be_stars.then(|| bulk(data, STARS_WITHIN)).flatten() {
-                Some(bulk) => Self { kind: Kind::Stars, bulk: Some(bulk), ..Self::plain() },
-                None => Self { bulk: bulk(data, WITHIN), ..Self::plain() },
+                Some(bulk) => Self { kind: Kind::Stars, bulk: Some(bulk), ..plain() },
+                None => {
+                    let extent = extent(data);
+                    let mut flat = (0..3).filter(|axis| extent[*axis] <= FLAT * extent.max_element());
+                    Self {
+                        bulk: bulk(data, WITHIN),
+                        seen_radius: seen_radius(data, extent),
+                        flat: if flat.clone().count() == 1 { flat.next() } else { None },
+                        ..plain()
+                    }
+                }
             };
         }
         let spacing = data.spacing();
@@ -254,8 +279,25 @@ impl Traits {
             beads_lack: data.unknown_lack().map(|lack| lack && has_beads),
             widest_view: if is_turned { widest_view(data, &water) } else { None },
             bulk: bulk(data, if kind == Kind::Stars { STARS_WITHIN } else { WITHIN }),
+            ..plain()
         }
     }
+}
+
+/// The sides of the box around all centres.
+fn extent(data: &Dataset) -> DVec3 {
+    let centers = (0..data.spheres.len()).map(|index| data.center(index)).filter(|center| center.is_finite());
+    let ends = (DVec3::INFINITY, DVec3::NEG_INFINITY);
+    let (low, high) = centers.fold(ends, |(low, high), center| (low.min(center), high.max(center)));
+    (high - low).max(DVec3::ZERO)
+}
+
+/// The radius with which points without radii can be seen, where neighbours on a curve or in clusters are so close that
+/// spheres that touch would be specks; so small that all spheres side by side do not fill a picture.
+fn seen_radius(data: &Dataset, extent: DVec3) -> Option<f64> {
+    let (touching, _) = data.guessed_radius()?;
+    let seen = extent.length() * (0.35 / (data.spheres.len() as f64).sqrt()).min(SEEN);
+    (seen > touching).then_some(seen)
 }
 
 /// The spheres that an expression selects; none if the data lacks what it needs.

@@ -43,6 +43,9 @@ pub struct KindNote {
 /// The keys that say what is drawn of data. If one is given, the kind does not say it.
 const STRUCTURE: [&str; 7] = ["bonds", "elements", "leave_out", "opacity_by", "radius", "radius_by", "show"];
 
+/// A colour that stands out from pale backgrounds, and that colour maps do not have at their ends.
+const PLAIN: &str = "#4c86b8";
+
 /// A length with five digits.
 fn written(length: f64) -> String {
     let digits = format!("{length:.4e}").parse::<f64>().unwrap_or(length);
@@ -121,6 +124,7 @@ impl KindSettings {
             Kind::Liquid => self.add("show = [{ as = \"spacefill\", scale = 0.7 }]"),
             // Points at random places leave few holes in surfaces.
             Kind::Scan => self.add(&format!("radius = {}", written(1.4 * traits.spacing))),
+            Kind::Plain if let Some(radius) = traits.seen_radius => self.add(&format!("radius = {}", written(radius))),
             // Stars are points, as long as neighbours are pixels apart.
             Kind::Stars if !is_given("radius_scale") => self.add("radius_scale = 0.3"),
             Kind::Atoms => {
@@ -172,6 +176,10 @@ impl KindSettings {
         if matches!(traits.kind, Kind::Particles | Kind::Polymer) && traits.beads_lack[0] && !is_colored(is_given) {
             self.add("color_by = \"species\"");
         }
+        let is_plain = traits.kind == Kind::Plain && traits.is_uncolored;
+        if is_plain && !is_colored(is_given) && !is_given("material") {
+            self.add(&format!("color = \"{PLAIN}\""));
+        }
     }
 
     fn focus(&mut self, traits: &Traits, is_given: &impl Fn(&str) -> bool) {
@@ -198,6 +206,13 @@ impl KindView {
         let has_view = VIEWS.iter().any(|key| is_given(key));
         let (usual, direction, up) = match (traits.kind, traits.widest_view) {
             _ if is_placed => return None,
+            (Kind::Plain, _) => match traits.flat.filter(|_| !has_view) {
+                None => ("pinhole", None, DVec3::Z),
+                // Straight on, with the first of its axes to the right.
+                Some(2) => ("pinhole", Some(DVec3::NEG_Z), DVec3::Y),
+                Some(1) => ("pinhole", Some(DVec3::Y), DVec3::Z),
+                Some(_) => ("pinhole", Some(DVec3::NEG_X), DVec3::Z),
+            },
             (Kind::Scan, _) if has_view => ("pinhole", None, traits.up),
             (Kind::Scan, _) => ("pinhole", Some(from(30.0, 35.0)[0]), traits.up),
             (Kind::Slab | Kind::Crystal, _) if has_view => ("orthographic", None, traits.up),
@@ -238,6 +253,9 @@ mod tests {
             beads_lack: [true; 2],
             widest_view: Some([DVec3::X, DVec3::Z]),
             bulk: Some([DVec3::splat(-1.0), DVec3::splat(2.5)]),
+            is_uncolored: true,
+            seen_radius: Some(0.1),
+            flat: Some(1),
         }
     }
 
@@ -261,6 +279,22 @@ mod tests {
             for given in ["style", "integrator", "background"] {
                 assert_eq!(KindSettings::new(&traits(kind), None, |key| key == given).style, None, "{given}");
             }
+        }
+    }
+
+    #[test]
+    fn plain_data_has_a_color_and_z_is_up() {
+        let plain = |flat, given: &'static [&str]| {
+            let traits = Traits { flat, bulk: None, has_cell: false, ..traits(Kind::Plain) };
+            KindSettings::new(&traits, None, |key| given.contains(&key)).text()
+        };
+        let up = "camera.pinhole = { up = [0.0, 0.0, 1.0] }\n";
+        assert_eq!(plain(None, &[]), format!("radius = 0.1\ncolor = \"{PLAIN}\"\n{up}"));
+        assert_eq!(plain(Some(2), &["view", "radius", "color_by"]), up);
+        assert_eq!(plain(None, &["material", "radius_by", "up"]), "");
+        let across = ["0.0, 0.0, -1.0], up = [0.0, 1.0, 0.0", "0.0, 1.0, 0.0], up = [0.0, 0.0, 1.0"];
+        for (axis, view) in [(2, across[0]), (1, across[1])] {
+            assert!(plain(Some(axis), &[]).contains(view), "{axis}: {}", plain(Some(axis), &[]));
         }
     }
 

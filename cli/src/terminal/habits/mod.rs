@@ -360,7 +360,7 @@ impl Reader<'_> {
         }
     }
 
-    /// Takes several files whose names differ in a number as the frames of a trajectory.
+    /// Takes several files whose names differ in a number as the frames of a trajectory, and others together.
     fn join_files(&mut self) {
         if self.command.get_positionals().count() != 1 {
             return;
@@ -368,7 +368,9 @@ impl Reader<'_> {
         let is_file = |place: &&usize| self.plain.get(**place).is_some_and(|word| Path::new(word).is_file());
         let files: Vec<usize> = self.files.iter().filter(is_file).copied().collect();
         let paths: Vec<PathBuf> = files.iter().filter_map(|place| self.plain.get(*place).map(PathBuf::from)).collect();
-        let (Some(name), Some((first, others))) = (FileSet::name_of(&paths), files.split_first()) else { return };
+        let are_data = paths.iter().all(|path| matches!(Format::of_path(path), Ok(Some(_))));
+        let name = FileSet::name_of(&paths).or_else(|| FileSet::name_together(&paths).filter(|_| are_data));
+        let (Some(name), Some((first, others))) = (name, files.split_first()) else { return };
         self.plain[*first] = name.into();
         for place in others.iter().rev() {
             self.plain.remove(*place);
@@ -396,10 +398,12 @@ impl Reader<'_> {
         }
         match files.get(most) {
             Some(word) if most == 1 && Path::new(*word).is_file() => Err(Failure::usage(format!(
-                "{}: one file is rendered at a time, but for frames, whose names differ in a number; render each file, or \
-                 join them first",
+                "{}: only files of data, without commas and braces in their names, are seen together; render each file",
                 word.to_string_lossy()
             ))),
+            Some(word) if most == 1 && matches!(Format::of_path(Path::new(word)), Ok(Some(_))) => {
+                Err(Failure::usage(format!("{}: there is no such file", word.to_string_lossy())))
+            }
             _ => Ok(()),
         }
     }

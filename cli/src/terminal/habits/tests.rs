@@ -97,7 +97,7 @@ fn words_without_a_meaning_are_refused() {
         ("--rotate 30", "--rotate: --view AZIMUTH,ELEVATION in degrees says from where, such as --view 30,20"),
         (
             "Cargo.toml",
-            "Cargo.toml: one file is rendered at a time, but for frames, whose names differ in a number; render each file, or join them first",
+            "Cargo.toml: only files of data, without commas and braces in their names, are seen together; render each file",
         ),
         ("--clip x<5", "--clip: spheres are not cut; --select 'x < 5' keeps a part"),
         ("--slice z", "--slice z: write AXIS=LOW:HIGH, such as z=3:9, which keeps whole spheres"),

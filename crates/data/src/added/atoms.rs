@@ -36,11 +36,12 @@ impl<'a> Atoms<'a> {
     /// The note about species without a covalent radius.
     pub(super) fn note(&self) -> Option<String> {
         let names = self.labels.names.iter().zip(&self.known);
-        let unknown = names.filter(|(_, known)| known.is_none()).map(|(name, _)| shortened(name));
-        (!self.are_all_known()).then(|| {
+        let unknown = names.filter(|(name, known)| known.is_none() && !name.is_empty());
+        let unknown: Vec<String> = unknown.map(|(name, _)| shortened(name)).collect();
+        (!unknown.is_empty()).then(|| {
             format!(
                 "these species have no covalent radius and therefore no bonds: {}; --bond-length L joins all that are closer",
-                listed(unknown, 5)
+                listed(unknown.into_iter(), 5)
             )
         })
     }

@@ -109,3 +109,29 @@ fn a_few_that_are_far_away_are_not_framed() {
     let [low, high] = traits(100.0).bulk.unwrap();
     assert!((low - DVec3::splat(-0.95)).length() < 1e-9 && (high - DVec3::new(9.95, 9.95, 19.95)).length() < 1e-9);
 }
+
+#[test]
+fn points_that_would_be_specks_are_larger_and_planes_are_known() {
+    let table = |rows: &mut dyn Iterator<Item = [f64; 3]>| {
+        let rows: String = rows.map(|[x, y, z]| format!("{x},{y},{z}\n")).collect();
+        traits("a.csv", &format!("x,y,z\n{rows}"))
+    };
+    // Points on a curve are much closer to each other than to the ends of the box.
+    let curve = table(&mut (0..2000).map(|i| f64::from(i) * 0.01).map(|t| [t, t.sin(), t.cos()]));
+    let seen = curve.seen_radius.unwrap();
+    assert!((0.05..0.1).contains(&seen), "{seen}");
+    assert_eq!((curve.kind, curve.is_uncolored, curve.flat), (Kind::Plain, true, None));
+    let lattice = table(&mut (0..1000).map(|i| [i / 100, i / 10 % 10, i % 10].map(f64::from)));
+    assert_eq!(lattice.seen_radius, None);
+    for axis in 0..3 {
+        let mut rows = (0..100).map(|i| {
+            let mut row = [f64::from(i % 10), f64::from(i / 10), f64::from(i % 10)];
+            (row[(axis + 1) % 3], row[axis]) = (f64::from(i / 10), 3.0);
+            row
+        });
+        assert_eq!(table(&mut rows).flat, Some(axis));
+    }
+    assert_eq!(table(&mut (0..9).map(|i| [f64::from(i), 0.0, 0.0])).flat, None);
+    assert!(!traits("a.csv", "x,y,z,r,g,b\n0,0,0,1,0,0\n1,0,0,0,1,0\n").is_uncolored);
+    assert_eq!(traits("a.csv", "x,y,z,radius\n0,0,0,1\n100,0,0,1\n").seen_radius, None);
+}

@@ -1,4 +1,5 @@
-//! Several files that are the frames of one trajectory, such as `dump.0` and `dump.100`, under one name: `dump.*`.
+//! Several files under one name: frames of one trajectory, such as `dump.0` and `dump.100` under `dump.*`, or files that
+//! are seen together, under `{protein.pdb,ligand.sdf}`.
 
 use std::ffi::OsStr;
 use std::path::{Path, PathBuf};
@@ -8,14 +9,16 @@ use super::error::LoadError;
 /// Several files for which one name stands, in the order of the numbers in their names.
 ///
 /// A `*` in the name stands for a number: `dump.*` for all files such as `dump.0` and `dump.100`. Words in braces stand for
-/// files that are listed: `dump.{0,100}`. A file that has such a name itself is no set.
+/// files that are listed: `dump.{0,100}`. If all of them are numbers, the files are frames. Others are put together. A file
+/// that has such a name itself is no set.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct FileSet {
     files: Vec<PathBuf>,
+    are_frames: bool,
 }
 
-/// A name in three parts: what stands before, in the place of, and after a number.
-type Parts<'a> = (&'a str, &'a str, &'a str);
+/// A folder, and a name in it in three parts: what stands before, in the place of, and after a number.
+type Parts<'a> = (&'a Path, [&'a str; 3]);
 
 impl FileSet {
     /// The files for which the name at the end of a path stands; `None` if it is the name of one file.
@@ -23,11 +26,12 @@ impl FileSet {
     /// # Errors
     /// Returns an error if there are no such files, or their folder cannot be read.
     pub fn of(path: &Path) -> Result<Option<Self>, LoadError> {
-        let Some((before, middle, after)) = parts(path) else { return Ok(None) };
-        let folder = path.parent().unwrap_or(Path::new(""));
+        let Some((folder, [before, middle, after])) = parts(path) else { return Ok(None) };
         if middle != "*" {
             let names = middle.trim_matches(['{', '}']).split(',');
-            return Ok(Some(Self { files: names.map(|name| folder.join(format!("{before}{name}{after}"))).collect() }));
+            let are_frames = names.clone().all(is_number);
+            let files = names.map(|name| folder.join(format!("{before}{name}{after}"))).collect();
+            return Ok(Some(Self { files, are_frames }));
         }
         let mut found = Vec::new();
         let listed = if folder.as_os_str().is_empty() { Path::new(".") } else { folder };
@@ -40,7 +44,8 @@ impl FileSet {
             return Err(LoadError::new("there is no file whose name has a number in the place of the *"));
         }
         found.sort_unstable_by(|a, b| key(a).cmp(&key(b)));
-        Ok(Some(Self { files: found.iter().map(|number| folder.join(format!("{before}{number}{after}"))).collect() }))
+        let files = found.iter().map(|number| folder.join(format!("{before}{number}{after}"))).collect();
+        Ok(Some(Self { files, are_frames: true }))
     }
 
     /// Returns true if the name at the end of a path stands for several files.
@@ -82,6 +87,21 @@ impl FileSet {
         Some(if Self::of(&all).ok().flatten().is_some_and(|all| all.files == files) { all } else { listed })
     }
 
+    /// The name for files that are seen together; `None` if one of them has a comma or a brace in its name.
+    #[must_use]
+    pub fn name_together(paths: &[PathBuf]) -> Option<PathBuf> {
+        let names: Option<Vec<&str>> = paths.iter().map(|path| path.to_str()).collect();
+        let names =
+            names.filter(|names| names.len() > 1 && !names.iter().any(|name| name.contains([',', '{', '}'])))?;
+        Some(PathBuf::from(format!("{{{}}}", names.join(","))))
+    }
+
+    /// Returns true if the files are frames of one trajectory, and false if they are seen together.
+    #[must_use]
+    pub fn are_frames(&self) -> bool {
+        self.are_frames
+    }
+
     /// The files.
     #[must_use]
     pub fn files(&self) -> &[PathBuf] {
@@ -89,15 +109,20 @@ impl FileSet {
     }
 }
 
-/// The parts of a name that stands for several files, and is not that of a file.
+/// The parts of a path that stands for several files, and is not that of a file.
 fn parts(path: &Path) -> Option<Parts<'_>> {
-    let name = path.file_name()?.to_str()?;
+    // Files in several folders are listed with these.
+    let whole = path.to_str().filter(|text| text.starts_with('{') && text.ends_with('}') && text.len() > 2);
+    let (folder, name) = match whole {
+        Some(whole) => (Path::new(""), whole),
+        None => (path.parent().unwrap_or(Path::new("")), path.file_name()?.to_str()?),
+    };
     let (first, last) = match name.find('{') {
         Some(first) => (first, name.find('}').filter(|last| *last > first + 1)?),
         None => (name.find('*')?, name.rfind('*')?),
     };
     let is_set = name[first..].starts_with('{') || first == last;
-    (is_set && !path.exists()).then(|| (&name[..first], &name[first..=last], &name[last + 1..]))
+    (is_set && !path.exists()).then(|| (folder, [&name[..first], &name[first..=last], &name[last + 1..]]))
 }
 
 fn is_number(text: &str) -> bool {

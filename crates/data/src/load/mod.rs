@@ -34,6 +34,7 @@ mod rows;
 mod source;
 mod spacing;
 mod table;
+mod together;
 mod topology;
 mod trajectory;
 

@@ -7,15 +7,19 @@ use super::error::{LoadError, LoadErrorKind, Place};
 use super::file_set::FileSet;
 use super::format::{Format, Options};
 use super::open::{OpenFile, open_file};
+use super::together::open_together;
 
 /// Reads a file of spheres. Its format is the one in the options, or else follows from the extension, or else from the
 /// content. Only the wanted frame of a file with several frames, or of a [`FileSet`], is in memory; [`Trajectory`] reads
-/// several.
+/// several. The files of a set that are no frames are put together, unless the options ask for a frame.
 ///
 /// # Errors
 /// Returns an error if the file cannot be read, its format is not known, or an option does not apply to it.
 pub fn open(path: impl AsRef<Path>, options: &Options) -> Result<Dataset, LoadError> {
     let path = path.as_ref();
+    if let Some(set) = FileSet::of(path)?.filter(|set| !set.are_frames() && options.frame.is_none()) {
+        return open_together(&set, options);
+    }
     let frame = options.frame.unwrap_or_default();
     if FileSet::is_one(path) || frame > 0 {
         match Trajectory::open_up_to(path, options) {
@@ -86,6 +90,9 @@ impl Trajectory {
         let options = Options { frame: None, ..options.clone() };
         let set = FileSet::of(path)?;
         let is_set = set.is_some();
+        // Files that are no frames of one trajectory have formats of their own.
+        let format = options.format.filter(|_| set.as_ref().is_none_or(FileSet::are_frames));
+        let options = Options { format, ..options };
         let mut found = Self { is_set, files: Vec::new(), options, last: (0, None), problem: None, radius: None };
         match set {
             None => found.add(path, last)?,

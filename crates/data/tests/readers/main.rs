@@ -18,4 +18,5 @@ mod cones;
 mod file_set;
 mod files;
 mod npy;
+mod together;
 mod xyz;
