@@ -110,12 +110,11 @@ class Camera:
         is_placed = self.up is not None or any(key in self.keys for key in ("eye", "look_at", "stereo"))
         if view is None or is_placed or self.kind in ("panorama", "fisheye"):
             return self.kind or "pinhole", None, None
-        camera, direction, up = view
+        camera, direction, up, up_of_views = view
         has_view = self.view is not None or self.turn != 0.0 or any(key in self.keys for key in ("direction", "focus_on"))
-        is_along = camera == "orthographic" or direction is None
         if any(key not in keys_of("camera.orthographic") for key in self.keys):
             camera = "pinhole"
-        return self.kind or camera, None if has_view else direction, up if is_along or not has_view else None
+        return self.kind or camera, None if has_view else direction, up_of_views if has_view else up
 
     def __repr__(self) -> str:
         shown = {"view": self.view, "turn": self.turn or None, "up": self.up, **self.keys}

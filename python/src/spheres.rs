@@ -62,8 +62,11 @@ pub(crate) struct SphereData {
     updates: AtomicU64,
 }
 
-/// The name of a kind, settings about data, the background, and the camera with two directions.
-type KindOfData = (Option<&'static str>, String, Option<&'static str>, Option<(String, Option<[f64; 3]>, [f64; 3])>);
+/// A camera, a direction of view, the direction that is up, and that of another view.
+type ViewOfData = (String, Option<[f64; 3]>, [f64; 3], Option<[f64; 3]>);
+
+/// The name of a kind, settings about data, the style, and the view.
+type KindOfData = (Option<&'static str>, String, Option<&'static str>, Option<ViewOfData>);
 
 impl SphereData {
     /// Makes spheres from loaded data.
@@ -245,12 +248,14 @@ impl SphereData {
     }
 
     /// The name of the kind of data, and the settings that follow from it: keys of a scene file about data, the style, and
-    /// the camera with its direction and the direction that is up.
+    /// the camera with its direction, the direction that is up, and that of another view.
     fn kind(&self) -> KindOfData {
         let KindSettings { data, style, view, .. } = &self.kind;
+        let of_views = self.traits.as_ref().map(|traits| KindSettings::new(traits, None, |key| key == "view"));
+        let up_of_views = of_views.and_then(|settings| settings.view).map(|view| view.up.to_array());
         let view = view.as_ref();
         let view = view.map(|KindView { camera, direction, up }| {
-            (camera.clone(), direction.map(|direction| direction.to_array()), up.to_array())
+            (camera.clone(), direction.map(|direction| direction.to_array()), up.to_array(), up_of_views)
         });
         (self.traits.as_ref().map(|traits| traits.kind.name()), data.clone(), style.map(Style::name), view)
     }

@@ -59,12 +59,24 @@ def test_several_files_are_a_trajectory(tmp_path):
     assert [frame.positions[1][0] for frame in ph.read(paths)] == [10, 100]
     assert ph.read(tmp_path / "a*.xyz", frame=-1).positions[1][0] == 100
     assert len(ph.read(paths[:1])) == 3
-    with pytest.raises(ph.InputError, match="their names differ in one number alone"):
+    with pytest.raises(ph.Error, match="b.xyz"):
         ph.read([*paths, tmp_path / "b.xyz"])
+    with pytest.raises(ph.InputError, match="cannot have commas or braces"):
+        ph.read([*paths, tmp_path / "b,c.xyz"])
     with pytest.raises(ph.Error, match="a number in the place of the"):
         ph.read(tmp_path / "b*.xyz")
     with pytest.raises(ph.InputError, match="there is no frame -4"):
         ph.read(tmp_path / "a*.xyz", frame=-4)
+
+
+def test_other_files_are_put_together(program, tmp_path):
+    (tmp_path / "water.xyz").write_text(WATER)
+    (tmp_path / "points.csv").write_text("x,y,z,radius\n9,0,0,1\n")
+    both = ph.read([tmp_path / "water.xyz", tmp_path / "points.csv"])
+    assert {"file", "species"} <= {*both.columns}
+    assert both.positions[-1][0] == 9
+    wanted = program("water.xyz", "points.csv", "--size", "80x60")
+    assert both.render((80, 60))._repr_png_() == wanted
 
 
 def test_the_program_sees_the_same_file(program, tmp_path):

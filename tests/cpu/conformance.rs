@@ -13,16 +13,16 @@ use crate::verify::{hostile_spheres, poses};
 
 /// The layers that a renderer returns.
 #[derive(Clone)]
-struct Layers {
-    size: [u32; 2],
-    ids: Vec<u32>,
-    depths: Vec<f64>,
-    normals: Vec<[f64; 3]>,
+pub(crate) struct Layers {
+    pub(crate) size: [u32; 2],
+    pub(crate) ids: Vec<u32>,
+    pub(crate) depths: Vec<f64>,
+    pub(crate) normals: Vec<[f64; 3]>,
 }
 
 impl Layers {
     /// The layers of the reference, in f32.
-    fn by_reference(scene: &Scene, view: &View<'_>) -> Self {
+    pub(crate) fn by_reference(scene: &Scene, view: &View<'_>) -> Self {
         let image = cpu::render(scene, view, &RenderSettings::default(), LayerSet::DATA).unwrap();
         Self {
             size: [image.width(), image.height()],
@@ -50,7 +50,7 @@ impl Layers {
         Self { size, ids, depths, normals: Vec::new() }
     }
 
-    fn answers(&self) -> Answers<'_> {
+    pub(crate) fn answers(&self) -> Answers<'_> {
         let depths = Some(&*self.depths);
         Answers { size: self.size, ids: &self.ids, depths, ..Answers::default() }
     }
@@ -72,7 +72,7 @@ fn certified(scene: &Scene, answers: &Answers<'_>, rays: Rays<'_>) -> Conformanc
 const FAR: usize = 1;
 
 /// Cameras outside, far away, inside, and an orthographic one.
-fn cameras(scene: &Scene) -> Vec<Box<dyn Camera>> {
+pub(crate) fn cameras(scene: &Scene) -> Vec<Box<dyn Camera>> {
     let (size, [outside, far, within]) = poses(scene);
     vec![
         Box::new(PinholeCamera::with_vertical_fov(outside, 0.7, 1.3).unwrap()),

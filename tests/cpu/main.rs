@@ -15,6 +15,7 @@ mod cameras;
 mod cone;
 mod cone_light;
 mod conformance;
+mod conformance_cones;
 mod framing;
 mod generate;
 mod host_camera;

@@ -175,7 +175,7 @@ fn no_picture_of_a_conforming_device_is_accused() {
 }
 
 /// Spheres between cylinders, needles, flat discs and pointed cones, with closed and open ends, at any scale.
-fn with_cones(seed: u64, scale: f64, length: [f64; 2], radius: [f64; 2]) -> Scene {
+pub(crate) fn with_cones(seed: u64, scale: f64, length: [f64; 2], radius: [f64; 2]) -> Scene {
     let mut random = fastrand::Rng::with_seed(seed);
     let cones: Vec<Cone> = (0..30)
         .map(|index| {

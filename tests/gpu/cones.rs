@@ -12,6 +12,7 @@ use pinhole::{Film, Image, Integrator, LayerSet, RenderSettings, Scene, View, cp
 use crate::support::cones::{crowded, hostile, mixed};
 use crate::support::effort::share;
 use crate::trial;
+use crate::verify::judged_by_rays;
 
 pub(crate) fn trials() -> Vec<Trial> {
     vec![
@@ -89,6 +90,10 @@ fn proved(headless: &'static Headless) {
             assert!(certificate.outcome() != Outcome::Violated, "{spheres} spheres, {cones} cones: {certificate}");
             open += certificate.undecided();
             all += certificate.verdicts.len();
+            // Also by exact rays, like the answers of any renderer.
+            let image = headless.render(&scene, &view, &settings, LayerSet::DATA).wait().unwrap();
+            let found = judged_by_rays(&scene, view, &image);
+            assert!(found.outcome() != Outcome::Violated, "{spheres} spheres, {cones} cones: {found}");
         }
     }
     assert!(open * 200 < all, "{open} of {all} are open");
@@ -124,6 +129,9 @@ fn hostile_scenes(headless: &'static Headless) {
         let view = View::new(camera.as_ref(), film);
         let certificate = headless.verify(&scene, &view, &settings).wait().unwrap();
         assert!(certificate.outcome() != Outcome::Violated, "seed {seed}: {certificate}");
+        let image = headless.render(&scene, &view, &settings, LayerSet::DATA).wait().unwrap();
+        let found = judged_by_rays(&scene, view, &image);
+        assert!(found.outcome() != Outcome::Violated, "seed {seed}: {found}");
         let [list, tree, grid] = [AccelChoice::List, AccelChoice::Tree, AccelChoice::Grid]
             .map(|choice| picture(headless, &scene, &view, choice, 1 << 27));
         assert!(list.id() == tree.id() && list.depth() == tree.depth(), "seed {seed}: list and tree");

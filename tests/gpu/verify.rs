@@ -11,9 +11,9 @@ use pinhole::camera::film::YAxis;
 use pinhole::camera::{FisheyeCamera, OrthographicCamera, PanoramaCamera, PinholeCamera, Pose, ThinLensCamera};
 use pinhole::gpu::{Headless, Wait};
 use pinhole::image::NO_ID;
-use pinhole::verify::conformance::{Answers, Rays};
+use pinhole::verify::conformance::{Answers, Conformance, Rays};
 use pinhole::verify::{Certificate, Checker, Outcome, Recording};
-use pinhole::{Appearance, Integrator, LayerSet, LinearRgb, Scene, Shading, Sphere, SphereArray};
+use pinhole::{Appearance, Image, Integrator, LayerSet, LinearRgb, Scene, Shading, Sphere, SphereArray};
 
 use crate::planted::{Fault, named, planted};
 use crate::scenes::{self, pinhole, view};
@@ -78,7 +78,13 @@ fn legal(name: &str, view: &View) -> Result<(), Failed> {
 
 /// Judges a picture by exact rays, like the answers of any renderer.
 fn certified(view: &View) -> Result<(), Failed> {
-    let image = view.picture(headless()?, LayerSet::DATA);
+    let found = judged_by_rays(&view.scene, view.seen(), &view.picture(headless()?, LayerSet::DATA));
+    println!("{found}");
+    if found.outcome() == Outcome::Violated { Err(found.to_string().into()) } else { Ok(()) }
+}
+
+/// What exact rays say of a picture with ids, depths and normals.
+pub(crate) fn judged_by_rays(scene: &Scene, view: pinhole::View<'_>, image: &Image) -> Conformance {
     let depths: Vec<f64> = image.depth().unwrap_or_default().iter().copied().map(f64::from).collect();
     let normals: Vec<[f64; 3]> =
         image.normal().unwrap_or_default().iter().map(|normal| normal.map(f64::from)).collect();
@@ -89,10 +95,7 @@ fn certified(view: &View) -> Result<(), Failed> {
         normals: Some(&normals),
         ..Answers::default()
     };
-    let rays = Rays::View(view.seen());
-    let found = Checker::new(&view.scene)?.certify_answers(&answers, rays, None)?;
-    println!("{found}");
-    if found.outcome() == Outcome::Violated { Err(found.to_string().into()) } else { Ok(()) }
+    Checker::new(scene).unwrap().certify_answers(&answers, Rays::View(view), None).unwrap()
 }
 
 fn build(scene: &Scene, how: How) -> Accel {

@@ -87,18 +87,20 @@ pub(crate) enum Course {
 }
 
 impl MovingCamera {
-    /// Prepares the motion along a path around the spheres of a stage.
+    /// Prepares the motion along a path around the spheres of a stage. `up` is the direction that is up, if it is not that of
+    /// the camera.
     pub(crate) fn on_path(
         source: &Source,
         wanted: &PathRequest,
         frames_per_second: u32,
         stage: Stage,
+        up: Option<DVec3>,
     ) -> Result<Self, Failure> {
         // The camera starts at a distance from which every view fits.
         let whole = around(&stage.framed).with_context(|| source.name())?;
         let framed = FramedScene::new(&whole, stage.key.as_ref());
         let base = source.look(&stage.file, framed, stage.sky.clone(), None)?.parameters;
-        let up = source.up().or_else(|| up_of(&base)).unwrap_or(DVec3::Y);
+        let up = up.or_else(|| up_of(&base)).unwrap_or(DVec3::Y);
         let motion = wanted.path.motion(up);
         let motion = motion.with_context(|| wanted.file.display().to_string())?;
         let center = stage.framed.bounds_to_frame().center();

@@ -86,7 +86,8 @@ pub(super) fn frames(
         return Ok(Start { input: source.input_with(contents, look)?, camera: None });
     };
     let (key, file) = (contents.color_key().cloned(), Arc::clone(&contents.file));
-    let camera = MovingCamera::on_path(source, path, fps, Stage { framed, key, file, sky })?;
+    let up = source.up(contents.details.chosen.as_ref());
+    let camera = MovingCamera::on_path(source, path, fps, Stage { framed, key, file, sky }, up)?;
     prepared(source, contents, camera, first, numbers.index_of(first))
 }
 
@@ -104,7 +105,8 @@ pub(super) fn still(
     framed.add(&contents.scene);
     let framed = framed.scene().with_context(|| source.name())?;
     let (key, file) = (contents.color_key().cloned(), Arc::clone(&contents.file));
-    let camera = MovingCamera::on_path(source, path, fps, Stage { framed, key, file, sky })?;
+    let up = source.up(contents.details.chosen.as_ref());
+    let camera = MovingCamera::on_path(source, path, fps, Stage { framed, key, file, sky }, up)?;
     prepared(source, contents, camera, first, index)
 }
 
@@ -113,7 +115,7 @@ pub(super) fn turntable(source: &Source, count: usize, first: usize) -> Result<S
     let contents = source.contents()?;
     let sky = source.sky(&contents)?;
     let (key, file) = (contents.color_key().cloned(), Arc::clone(&contents.file));
-    let direction = match source.up() {
+    let direction = match source.up(contents.details.chosen.as_ref()) {
         Some(up) => up.normalize_or(DVec3::Y),
         None => {
             let framed = FramedScene::new(&contents.scene, key.as_ref());

@@ -1,6 +1,7 @@
 //! The choices of the program for a data file, which follow from the kind of data.
 
 use crate::flags::settings::Given;
+use pinhole::glam::DVec3;
 use pinhole_data::kind::{Kind, Traits};
 use pinhole_data::load::Dataset;
 use pinhole_data::select::Selection;
@@ -21,6 +22,8 @@ pub(crate) struct Chosen {
     pub(super) style: Option<Style>,
     /// The kind of the camera that its flags are about.
     camera: Option<String>,
+    /// The direction that is up, if it is not the usual one.
+    pub(crate) up: Option<DVec3>,
     /// The colours by kinds of spheres.
     pub(crate) colors: Option<ColorBy>,
     /// The name of the kind, if it decides anything.
@@ -59,7 +62,7 @@ impl Chosen {
         let text = settings.text();
         let name = (!text.is_empty()).then(|| traits.kind.name());
         let notes = settings.notes.iter().map(|note| format!("{}; {}", note.what, note.remedies[0])).collect();
-        let camera = settings.view.map(|view| view.camera);
-        Self { layer: Layer { flag: KIND, text }, style: settings.style, camera, colors: None, name, notes }
+        let (camera, up) = settings.view.map(|view| (view.camera, view.up)).unzip();
+        Self { layer: Layer { flag: KIND, text }, style: settings.style, camera, up, colors: None, name, notes }
     }
 }

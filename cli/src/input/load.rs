@@ -8,6 +8,7 @@ use super::contents::Contents;
 use super::look::FramedScene;
 use super::source::{FoundFrames, OpenFrames, Source};
 use crate::input::data::{self, DataOptions, as_usage};
+use crate::input::kinds::Chosen;
 use crate::input::read_file::{Format, is_standard_input};
 use crate::terminal::failure::Failure;
 use pinhole::camera::CameraPath;
@@ -92,11 +93,11 @@ impl Source {
         self.path.display().to_string()
     }
 
-    /// The direction that is up for the flags; `None` if the camera is that of a scene file.
-    pub(crate) fn up(&self) -> Option<DVec3> {
+    /// The direction that is up for the flags, or else for what was chosen; `None` if the camera is that of a scene file.
+    pub(crate) fn up(&self, chosen: Option<&Chosen>) -> Option<DVec3> {
         let is_of_flags = self.is_data() || self.given.first_in(Group::Camera as u32).is_some();
         let up = self.given.get("up").and_then(|text| list_of(text, 3).ok());
         let up = up.and_then(|up| <[f64; 3]>::try_from(up).ok()).map(DVec3::from);
-        is_of_flags.then(|| up.unwrap_or_else(|| self.default_up()))
+        is_of_flags.then(|| up.or(chosen.and_then(|chosen| chosen.up)).unwrap_or_else(|| self.default_up()))
     }
 }

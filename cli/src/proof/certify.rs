@@ -29,13 +29,13 @@ use pinhole_figure::settings::flags::Group;
     after_help = "For each pixel the check computes the least k for which the answer is legal: the exact answer for a \
     sphere that is moved, relative to the ray, by at most k times 2^-24 of its distance (of its radius, from inside; and \
     with rays of the scene's camera, of its distance plus an eighth of that of the camera from the origin of the data's \
-    frame). For normals, an eighth of the distance of the ray's start from the origin of the world is added. An honest f32 \
+    frame). Cones and cylinders are moved alike, by the distance of the farther end. For normals, an eighth of the distance of the ray's start from the origin of the world is added. An honest f32 \
     renderer needs at most 24 for given rays; 16 more for rays that it makes itself, and 8 more for normals. A pixel is proved if its answer is the only \
     legal one for the limit, undecided if there are others, and violated if it needs more than the limit.\n\n\
     Arrays have row 0 at the top, in either byte order. IDs are uint32, int32, uint64 or int64 of shape (height, width): \
-    indices of spheres in the order of the data; a miss is -1 or the largest number of the type. Depths are float32 or \
+    indices of spheres in the order of the data, and then of cones and cylinders; a miss is -1 or the largest number of the type. Depths are float32 or \
     float64; those of misses are not looked at. Normals have the shape (height, width, 3), in world space, and point away \
-    from centers. RAYS.npz has the arrays `directions`, of shape (height, width, 3) and unit length, and `origins`, of the \
+    from centers and axes. RAYS.npz has the arrays `directions`, of shape (height, width, 3) and unit length, and `origins`, of the \
     same shape or (3,).\n\n\
     Exit codes: 0 no pixel needs more than the limit, and at most 1 % of the pixels are undecided; 1 the job failed; \
     2 wrong usage; 3 a pixel needs more than the limit; 4 none does, but more is undecided.\n\n\
@@ -50,7 +50,7 @@ pub(crate) struct CertifyArgs {
     path: PathBuf,
     #[command(flatten)]
     view: SettingArgs<VIEW>,
-    /// The sphere of each pixel
+    /// The sphere, cone or cylinder of each pixel
     #[arg(long, value_name = "ID.npy")]
     id: PathBuf,
     /// The depth of each pixel

@@ -144,7 +144,7 @@ pub struct Traits {
     /// Two corners of the box in which nearly all centres lie, if some lie so far away that all would be small in a
     /// picture.
     pub bulk: Option<[DVec3; 2]>,
-    /// Returns true if neither the data nor elements in it give colours.
+    /// Returns true if nothing in the data gives colours: no colours, species or types.
     pub is_uncolored: bool,
     /// A radius with which few points can be seen, if they have none and about touch where they are small.
     pub seen_radius: Option<f64>,
@@ -178,7 +178,8 @@ impl Traits {
     /// is not looked at.
     #[must_use]
     pub fn of(data: &Dataset, select: Option<&Selection>, asked: Option<Kind>) -> Self {
-        let plain = || Self::plain(data.colors.is_none() && data.labels("species").is_none());
+        let plain =
+            || Self::plain(data.colors.is_none() && ["species", "type"].iter().all(|name| data.labels(name).is_none()));
         if asked == Some(Kind::Plain) {
             return plain();
         }

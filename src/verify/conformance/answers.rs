@@ -109,11 +109,6 @@ impl Answers<'_> {
 
     /// Checks whether the answers can be judged. Every number is checked.
     pub(super) fn check(&self, scene: &Scene, rays: Rays<'_>) -> Result<(), ConformanceError> {
-        if !scene.cones().is_empty() {
-            let message = "answers to rays in scenes with cones or cylinders cannot be judged yet; leave them out, or \
-                           check pictures that Pinhole draws by primary rays";
-            return Err(refused(None, message.to_owned()));
-        }
         let size = self.size;
         let count = u64::from(size[0]) * u64::from(size[1]);
         let [width, height] = size;
@@ -147,7 +142,7 @@ impl Answers<'_> {
             let message = "depths along an axis need a camera with a plane (pinhole, orthographic or thin-lens)";
             return Err(refused(Some(Field::DepthKind), message.to_owned()));
         }
-        self.check_numbers(scene.len())
+        self.check_numbers(scene)
     }
 
     /// The error for an invalid number of a pixel.
@@ -172,13 +167,17 @@ impl Answers<'_> {
         Err(self.wrong(Field::Rays, index, "direction of the ray", &message))
     }
 
-    fn check_numbers(&self, spheres: usize) -> Result<(), ConformanceError> {
+    fn check_numbers(&self, scene: &Scene) -> Result<(), ConformanceError> {
         for (index, id) in self.ids.iter().enumerate().filter(|(_, id)| **id != NO_ID) {
-            if *id as usize >= spheres {
-                let plural = if spheres == 1 { "" } else { "s" };
+            if *id as usize >= scene.shape_count() {
+                let (spheres, cones) = (scene.len(), scene.cones().len());
+                let plural = |count| if count == 1 { "" } else { "s" };
+                let too = if cones == 0 { String::new() } else { format!(" and {cones} cone{}", plural(cones)) };
+                let after = if cones == 0 { "" } else { ", and cones and cylinders after spheres" };
                 let message = format!(
-                    "is {id}, but the scene has {spheres} sphere{plural}; ids count them from 0 in the order of the \
-                     input"
+                    "is {id}, but the scene has {spheres} sphere{}{too}; ids count them from 0 in the order of the \
+                     input{after}",
+                    plural(spheres)
                 );
                 return Err(self.wrong(Field::Ids, index, "id", &message));
             }
@@ -258,6 +257,8 @@ pub struct Finding {
     pub reason: Reason,
     /// The sphere that the exact ray hits, and its distance.
     pub exact: Option<(u32, f64)>,
+    /// The number of spheres; later ids are those of cones.
+    pub(super) spheres: u32,
 }
 
 /// The defect of an answer if the ray is not changed.
@@ -361,11 +362,12 @@ impl fmt::Display for Finding {
     /// Writes the finding on one line.
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         let ([i, j], id) = (self.pixel, self.id);
+        let shape = |id| format!("{} {id}", if id < self.spheres { "sphere" } else { "cone" });
         write!(f, "pixel ({i}, {j}): ")?;
         match self.depth {
             _ if id == NO_ID => f.write_str("a miss")?,
-            Some(depth) => write!(f, "sphere {id} at {depth}")?,
-            None => write!(f, "sphere {id}")?,
+            Some(depth) => write!(f, "{} at {depth}", shape(id))?,
+            None => f.write_str(&shape(id))?,
         }
         write!(f, " needs k = {:.4}", self.least)?;
         if self.margin.is_finite() {
@@ -375,11 +377,11 @@ impl fmt::Display for Finding {
             Reason::Missed => f.write_str(": the ray misses it")?,
             Reason::Depth => f.write_str(": it is hit elsewhere")?,
             Reason::Normal => f.write_str(": its normal is another")?,
-            Reason::Hidden(other) => write!(f, ": sphere {other} is hit")?,
+            Reason::Hidden(other) => write!(f, ": {} is hit", shape(other))?,
             Reason::NoRay => return f.write_str(": the camera has no ray there"),
         }
         match self.exact {
-            Some((id, t)) => write!(f, "; the exact ray hits sphere {id} at {t:.9e}"),
+            Some((id, t)) => write!(f, "; the exact ray hits {} at {t:.9e}", shape(id)),
             None => f.write_str("; the exact ray misses everything"),
         }
     }

@@ -3,12 +3,13 @@
 use glam::DVec3;
 
 use super::answers::{Answers, DepthKind, EPSILON, Finding, OF_COORDINATES, Rays, Reason};
-use super::relative_sphere::RelativeSphere;
+use super::moves::Moves;
+use super::relative::Seen;
 use crate::image::NO_ID;
-use crate::scene::Scene;
+use crate::scene::{Scene, Shape};
 use crate::verify::certificate::Outcome;
+use crate::verify::hit::Candidates;
 use crate::verify::sphere::Line;
-use crate::verify::tree::Tree;
 
 /// The k (a move in units of ε) that moves a centre by its distance: every answer consistent with one sphere is legal.
 const EVERYTHING: f64 = 1.0 / EPSILON;
@@ -18,7 +19,7 @@ const OF_SEARCH: f64 = 1.0 / (1_u64 << 40) as f64;
 
 pub(super) struct PixelCheck<'a> {
     pub(super) scene: &'a Scene,
-    pub(super) spheres: &'a Tree<[f32; 4]>,
+    pub(super) candidates: &'a Candidates,
     pub(super) answers: Answers<'a>,
     pub(super) rays: Rays<'a>,
     pub(super) axis: Option<DVec3>,
@@ -37,15 +38,15 @@ struct ExactRay {
 /// A sphere other than the one that the renderer found.
 struct Other {
     id: u32,
-    seen: RelativeSphere,
+    seen: Seen,
     /// The distance at which it may be hit.
     earliest: f64,
 }
 
 /// A renderer's claim about a pixel that it calls a hit.
 struct Claim {
-    sphere: [f32; 4],
-    seen: RelativeSphere,
+    shape: Shape,
+    seen: Seen,
     /// The length of the move for k = 1.
     unit: f64,
     distance: Option<f64>,
@@ -58,18 +59,18 @@ struct Claim {
 }
 
 impl ExactRay {
-    fn seen(&self, sphere: [f32; 4]) -> RelativeSphere {
-        RelativeSphere::new(self.line.origin, self.line.direction, sphere)
+    fn seen(&self, shape: Shape) -> Seen {
+        Seen::new(self.line.origin, self.line.direction, shape)
     }
 
     /// The length of the move of a sphere for k = 1.
-    fn unit(&self, seen: &RelativeSphere) -> f64 {
+    fn unit(&self, seen: &Seen) -> f64 {
         EPSILON * (seen.size() + self.start)
     }
 
     /// The largest k of some spheres, given the move of each.
-    fn most(&self, others: &[Other], moved: impl Fn(&RelativeSphere) -> f64) -> f64 {
-        others.iter().map(|other| moved(&other.seen) / self.unit(&other.seen)).fold(0.0, f64::max)
+    fn most(&self, others: &[Other], moved: impl Fn(&dyn Moves) -> f64) -> f64 {
+        others.iter().map(|other| moved(&*other.seen) / self.unit(&other.seen)).fold(0.0, f64::max)
     }
 }
 
@@ -95,10 +96,10 @@ impl PixelCheck<'_> {
         let (least, is_only) = match self.claim(index, id, &ray) {
             None => {
                 let (mut others, _) = self.find(&ray, None);
-                let mut least = ray.most(&others, RelativeSphere::move_to_miss);
+                let mut least = ray.most(&others, |seen| seen.move_to_miss());
                 if least > self.at_most {
                     others = self.find_crossed(&ray, None, f64::INFINITY);
-                    least = ray.most(&others, RelativeSphere::move_to_miss);
+                    least = ray.most(&others, |seen| seen.move_to_miss());
                 }
                 (least, others.is_empty())
             }
@@ -133,6 +134,7 @@ impl PixelCheck<'_> {
             margin: f64::INFINITY,
             reason: Reason::NoRay,
             exact: None,
+            spheres: self.scene.len() as u32,
         };
         let Some(ray) = self.ray(index) else { return finding };
         let crossed = self.find_crossed(&ray, None, f64::INFINITY);
@@ -152,7 +154,7 @@ impl PixelCheck<'_> {
                 };
                 let others = crossed
                     .iter()
-                    .filter(|other| claim.as_ref().is_none_or(|claim| !is_same(self.sphere(other.id), claim.sphere)));
+                    .filter(|other| claim.as_ref().is_none_or(|claim| !is_same(self.shape(other.id), claim.shape)));
                 let worst = others.max_by(|a, b| needed(a).0.total_cmp(&needed(b).0));
                 if let Some(worst) = worst {
                     (finding.margin, finding.reason) = (needed(worst).1, Reason::Hidden(worst.id));
@@ -162,8 +164,35 @@ impl PixelCheck<'_> {
         finding
     }
 
-    fn sphere(&self, id: u32) -> [f32; 4] {
-        self.scene.spheres()[id as usize]
+    fn shape(&self, id: u32) -> Shape {
+        let (spheres, id) = (self.scene.spheres(), id as usize);
+        match spheres.get(id) {
+            Some(sphere) => Shape::Sphere(*sphere),
+            None => Shape::Cone(self.scene.cones()[id - spheres.len()]),
+        }
+    }
+
+    /// Calls `offer` for every shape that comes near a ray before `limit`: within a length that depends on that of the
+    /// longest vector to a shape. The return value of `offer` is the new limit.
+    fn visit(
+        &self,
+        line: &Line,
+        beside: impl Fn(f64) -> f64,
+        mut limit: f64,
+        mut offer: impl FnMut(u32, Shape) -> f64,
+    ) {
+        let Candidates { spheres, cones, .. } = self.candidates;
+        if !self.scene.spheres().is_empty() {
+            let beside = beside(spheres.longest_from(line.origin));
+            spheres.visit_beside(line, beside, limit, |candidate| {
+                limit = offer(candidate.id, Shape::Sphere(candidate.shape));
+                limit
+            });
+        }
+        if !self.scene.cones().is_empty() {
+            let beside = beside(cones.longest_from(line.origin));
+            cones.visit_beside(line, beside, limit, |candidate| offer(candidate.id, Shape::Cone(candidate.shape)));
+        }
     }
 
     /// The renderer's claim about a hit; `None` for a miss.
@@ -171,8 +200,8 @@ impl PixelCheck<'_> {
         if id == NO_ID {
             return None;
         }
-        let sphere = self.sphere(id);
-        let (seen, direction) = (ray.seen(sphere), ray.line.direction);
+        let shape = self.shape(id);
+        let (seen, direction) = (ray.seen(shape), ray.line.direction);
         let unit = ray.unit(&seen);
         let distance = self.answers.depths.map(|depths| match (self.answers.depth_kind, self.axis) {
             (DepthKind::AlongAxis, Some(axis)) => depths[index] / direction.dot(axis),
@@ -187,7 +216,7 @@ impl PixelCheck<'_> {
         }
         let (mut alone, mut tells_normals) = (moved / unit, true);
         if let Some(normals) = self.answers.normals {
-            let (normal, radius) = (DVec3::from(normals[index]), f64::from(sphere[3]));
+            let (normal, radius) = (DVec3::from(normals[index]), seen.radius());
             let of_normal =
                 seen.move_to_normal(direction, normal.normalize_or_zero()).max((normal.length() - 1.0).abs() * radius);
             // The coordinates of the hit point are rounded, whether the ray was given or not.
@@ -199,27 +228,26 @@ impl PixelCheck<'_> {
         }
         // The value is NaN if a ray is perpendicular to the axis of depth.
         let alone = if alone.is_nan() { f64::INFINITY } else { alone };
-        Some(Claim { sphere, seen, unit, distance, alone, moved, reason, tells_normals })
+        Some(Claim { shape, seen, unit, distance, alone, moved, reason, tells_normals })
     }
 
     /// The other spheres that may be the nearest, for k of at most the limit, and whether the claimed sphere is certainly
     /// hit.
     fn find(&self, ray: &ExactRay, claim: Option<&Claim>) -> (Vec<Other>, bool) {
         let (mut others, k) = (Vec::<Other>::new(), self.at_most);
-        let longest = self.spheres.longest_from(ray.line.origin);
-        let beside = k * EPSILON * (longest + ray.start) + OF_SEARCH * longest;
+        let beside = |longest: f64| k * EPSILON * (longest + ray.start) + OF_SEARCH * longest;
         let claimed = claim.map(|claim| (claim, k * claim.unit));
         let certain = claimed.filter(|(claim, a)| claim.seen.move_to_miss() > *a);
         let mut limit = certain.map_or(f64::INFINITY, |(claim, a)| claim.seen.latest(a));
-        self.spheres.visit_beside(&ray.line, beside, limit, |candidate| {
-            let seen = ray.seen(candidate.shape);
+        self.visit(&ray.line, beside, limit, |id, shape| {
+            let seen = ray.seen(shape);
             let a = k * ray.unit(&seen);
-            if seen.move_to_hit() > a || claim.is_some_and(|c| is_same(c.sphere, candidate.shape)) {
+            if seen.move_to_hit() > a || claim.is_some_and(|claim| is_same(claim.shape, shape)) {
                 return limit;
             }
             let earliest = seen.earliest(a);
             if earliest <= limit {
-                others.push(Other { id: candidate.id, seen, earliest });
+                others.push(Other { id, seen, earliest });
                 if seen.move_to_miss() > a {
                     limit = limit.min(seen.latest(a));
                 }
@@ -233,15 +261,19 @@ impl PixelCheck<'_> {
     /// The spheres other than the claimed one that the exact ray meets before `t`.
     fn find_crossed(&self, ray: &ExactRay, claim: Option<&Claim>, t: f64) -> Vec<Other> {
         let mut others = Vec::new();
-        let beside = OF_SEARCH * self.spheres.longest_from(ray.line.origin);
-        self.spheres.visit_beside(&ray.line, beside, t, |candidate| {
-            let seen = ray.seen(candidate.shape);
-            let is_other = claim.is_none_or(|claim| !is_same(claim.sphere, candidate.shape));
-            if is_other && seen.move_to_miss() > 0.0 {
-                others.push(Other { id: candidate.id, seen, earliest: seen.earliest(0.0) });
-            }
-            t
-        });
+        self.visit(
+            &ray.line,
+            |longest| OF_SEARCH * longest,
+            t,
+            |id, shape| {
+                let seen = ray.seen(shape);
+                let is_other = claim.is_none_or(|claim| !is_same(claim.shape, shape));
+                if is_other && seen.move_to_miss() > 0.0 {
+                    others.push(Other { id, seen, earliest: seen.earliest(0.0) });
+                }
+                t
+            },
+        );
         others
     }
 
@@ -275,7 +307,11 @@ impl Claim {
     }
 }
 
-/// Whether spheres are equal to the bit, so that no renderer can tell them apart.
-fn is_same(a: [f32; 4], b: [f32; 4]) -> bool {
-    a.map(f32::to_bits) == b.map(f32::to_bits)
+/// Returns true if shapes are equal to the bit, so that no renderer can tell them apart.
+fn is_same(a: Shape, b: Shape) -> bool {
+    match (a, b) {
+        (Shape::Sphere(a), Shape::Sphere(b)) => a.map(f32::to_bits) == b.map(f32::to_bits),
+        (Shape::Cone(a), Shape::Cone(b)) => bytemuck::bytes_of(&a) == bytemuck::bytes_of(&b),
+        _ => false,
+    }
 }

@@ -7,6 +7,7 @@
 
 use glam::DVec3;
 
+use super::moves::Moves;
 use crate::geometry::math::wide;
 
 /// A sphere relative to a ray.
@@ -32,11 +33,6 @@ impl RelativeSphere {
         Self { b, f: foot.length(), l: to_center.length(), r: radius.into(), foot }
     }
 
-    /// The length of which k is a multiple: the distance of the centre, or the radius if the ray starts inside.
-    pub(super) fn size(&self) -> f64 {
-        self.l.max(self.r)
-    }
-
     fn starts_inside(&self) -> bool {
         self.l <= self.r
     }
@@ -45,15 +41,23 @@ impl RelativeSphere {
     fn distance_of(&self, t: f64) -> f64 {
         (t - self.b).hypot(self.f)
     }
+}
 
-    /// The least move for which the sphere is hit.
-    pub(super) fn move_to_hit(&self) -> f64 {
+impl Moves for RelativeSphere {
+    fn size(&self) -> f64 {
+        self.l.max(self.r)
+    }
+
+    fn radius(&self) -> f64 {
+        self.r
+    }
+
+    fn move_to_hit(&self) -> f64 {
         let outside = if self.b > 0.0 { self.f } else { self.l };
         if self.starts_inside() { 0.0 } else { (outside - self.r).max(0.0) }
     }
 
-    /// The least move for which the sphere is missed; 0 if the ray misses it anyway.
-    pub(super) fn move_to_miss(&self) -> f64 {
+    fn move_to_miss(&self) -> f64 {
         let least = match (self.starts_inside(), self.b > 0.0) {
             (true, false) => self.r - self.l,
             (false, false) => 0.0,
@@ -63,8 +67,7 @@ impl RelativeSphere {
         least.max(0.0)
     }
 
-    /// The least move for which the first point of the sphere on the ray is at distance `t`.
-    pub(super) fn move_to_hit_at(&self, t: f64) -> f64 {
+    fn move_to_hit_at(&self, t: f64) -> f64 {
         let to_surface = (self.distance_of(t) - self.r).abs();
         // If a line only touches the moved sphere, its centre is beside the point.
         let to_touching = (t - self.b).hypot(self.f - self.r);
@@ -73,8 +76,7 @@ impl RelativeSphere {
         entering.min(leaving.max(self.l - self.r))
     }
 
-    /// The least move for which the sphere does not certainly hide a point at distance `t`.
-    pub(super) fn move_to_pass(&self, t: f64) -> f64 {
+    fn move_to_pass(&self, t: f64) -> f64 {
         let missed = self.move_to_miss();
         let beyond_far_side = self.distance_of(t) - self.r;
         if self.starts_inside() {
@@ -86,8 +88,7 @@ impl RelativeSphere {
         missed.min(before_near_side).min(inside).max(0.0)
     }
 
-    /// The least move for which the outward normal of the hit is `normal`, which must have unit length.
-    pub(super) fn move_to_normal(&self, direction: DVec3, normal: DVec3) -> f64 {
+    fn move_to_normal(&self, direction: DVec3, normal: DVec3) -> f64 {
         let along = normal.dot(direction);
         // The moved centre is on the line that lies beside the ray by the normal times the radius.
         let beside = (self.foot + self.r * (normal - along * direction)).length();
@@ -97,8 +98,7 @@ impl RelativeSphere {
         entering.min(leaving)
     }
 
-    /// The least distance of the hits of all spheres whose centre is moved by at most `a`, if any is hit.
-    pub(super) fn earliest(&self, a: f64) -> f64 {
+    fn earliest(&self, a: f64) -> f64 {
         if self.l - self.r <= -a {
             // All moved spheres contain the start.
             let inner = self.r - a;
@@ -111,8 +111,7 @@ impl RelativeSphere {
         self.b - (outer * outer - self.f * self.f).max(0.0).sqrt()
     }
 
-    /// The largest distance of the hits of all spheres whose centre is moved by at most `a`, if all are hit.
-    pub(super) fn latest(&self, a: f64) -> f64 {
+    fn latest(&self, a: f64) -> f64 {
         if self.l - self.r > a {
             let inner = self.r - a;
             return self.b - (inner * inner - self.f * self.f).max(0.0).sqrt();
