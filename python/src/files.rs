@@ -42,14 +42,14 @@ impl FileData {
         columns: Vec<String>,
     ) -> PyResult<Self> {
         Ok(worker::run(py, None, move |_| {
-            let set = FileSet::of(path.as_ref()).map_err(|error| Fault::reading(&path, &error))?;
-            let are_together = set.is_some_and(|set| !set.are_frames());
+            FileSet::of(path.as_ref()).map_err(|error| Fault::reading(&path, &error))?;
             let format = format_of(&path, format.as_deref())?;
             let mut options = Options::default().with_format(format).with_columns(columns);
             (options.radius, options.topology) = (radius, topology);
             format.check(&options).map_err(Fault::input)?;
             let fault = |error: LoadError| Fault::reading(&path, &error);
-            let has_frames = (format.has_frames() || FileSet::is_one(path.as_ref())) && !are_together;
+            let has_frames =
+                (format.has_frames() || FileSet::is_one(path.as_ref())) && FileSet::together(path.as_ref()).is_none();
             let found = has_frames.then(|| Trajectory::open(&path, &options)).transpose().map_err(fault)?;
             let count = found.as_ref().map_or(1, Trajectory::len);
             let problem = found.as_ref().and_then(Trajectory::problem).map(ToString::to_string);

@@ -16,7 +16,7 @@ use crate::terminal::progress::answer;
 use crate::terminal::text;
 use pinhole::LinearRgb;
 use pinhole::internals::text::{one_line, whole_line};
-use pinhole_data::load::{Column, ColumnValues, Dataset, Format};
+use pinhole_data::load::{Column, ColumnValues, Dataset, FileSet, Format};
 
 /// The file to describe, and how it is read.
 #[derive(Debug, Args)]
@@ -79,7 +79,7 @@ fn report(args: &FileArgs, path: &Path) -> Result<Report, Failure> {
 
 fn of_data(path: &Path, format: &'static Format, options: &DataOptions) -> Result<Report> {
     let is_file = !read_file::is_standard_input(path);
-    let has_frames = data::has_frames(path, format) && !data::are_together(path);
+    let has_frames = data::has_frames(path, format) && FileSet::together(path).is_none();
     let (loaded, frames, problem) = if has_frames && is_file {
         let mut trajectory = data::trajectory(path, format, options)?;
         let problem = trajectory.problem().map(ToString::to_string);

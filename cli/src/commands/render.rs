@@ -44,7 +44,7 @@ fn default_output(args: &RenderArgs) -> Result<PathBuf, Failure> {
     if args.frames.asks_for_several() || args.frames.of_writing().is_some() || args.stereo == Some(Stereo::TwoFiles) {
         return Err(no_name("several pictures need a name; add -o f%04d.png, or -o movie.mp4"));
     }
-    let together = FileSet::of(input).ok().flatten().filter(|set| !set.are_frames());
+    let together = FileSet::together(input);
     let named = together.as_ref().and_then(|set| set.files().first()).unwrap_or(input);
     let plain = without_ending(named);
     let name = plain.file_stem().filter(|_| !is_standard_input(input));

@@ -74,10 +74,7 @@ fn is_of_atoms(format: &Format) -> bool {
 /// Reads spheres from a file. Of a file with frames only the one that is asked for is in memory. Errors and notes get the
 /// path in front.
 pub(crate) fn read(path: &Path, format: &'static Format, options: &DataOptions) -> Result<Dataset> {
-    if are_together(path)
-        && options.frame.is_none()
-        && let Some(set) = FileSet::of(path).map_err(|error| named(path, error))?
-    {
+    if let Some(set) = FileSet::together(path).filter(|_| options.frame.is_none()) {
         let read_one = |file| Ok((file, read(file, data_format(file).unwrap_or(format), options)?));
         let parts = set.files().iter().map(PathBuf::as_path).map(read_one);
         return Dataset::joined(parts.collect::<Result<Vec<_>>>()?).map_err(|error| named(path, error));
@@ -93,11 +90,6 @@ pub(crate) fn read(path: &Path, format: &'static Format, options: &DataOptions) 
 /// Returns true if a file of this format can have frames, or a name stands for several files.
 pub(crate) fn has_frames(path: &Path, format: &Format) -> bool {
     format.has_frames() || FileSet::is_one(path)
-}
-
-/// Returns true if a name stands for several files that are no frames of one trajectory.
-pub(crate) fn are_together(path: &Path) -> bool {
-    FileSet::of(path).is_ok_and(|set| set.is_some_and(|set| !set.are_frames()))
 }
 
 /// Gives all spheres the radius that is asked for, and puts the path before notes.

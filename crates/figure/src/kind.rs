@@ -97,7 +97,8 @@ impl KindSettings {
     }
 
     fn shapes(&mut self, traits: &Traits, is_given: &impl Fn(&str) -> bool) {
-        if traits.has_cell && !is_given("box") && traits.kind != Kind::Biomolecule {
+        // The edges of a cell with an empty layer would leave the picture.
+        if traits.has_cell && !is_given("box") && ![Kind::Biomolecule, Kind::Slab].contains(&traits.kind) {
             self.add("box = true");
         }
         if traits.has_cell && !is_given("replicate") {

@@ -37,7 +37,7 @@ pub(super) struct RelativeCone {
 const GOLDEN: f64 = 0.618_033_988_749_894_9;
 const STEPS: usize = 55;
 
-/// The number of times that an interval is halved, which leave as much.
+/// The number of times that an interval is halved, which leave less.
 const HALVINGS: usize = 42;
 
 /// The place of the least value of a convex function.

@@ -48,6 +48,12 @@ impl FileSet {
         Ok(Some(Self { files, are_frames: true }))
     }
 
+    /// The files for which a path stands if they are seen together, and are no frames.
+    #[must_use]
+    pub fn together(path: &Path) -> Option<Self> {
+        Self::of(path).ok().flatten().filter(|set| !set.are_frames)
+    }
+
     /// Returns true if the name at the end of a path stands for several files.
     #[must_use]
     pub fn is_one(path: &Path) -> bool {

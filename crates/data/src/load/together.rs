@@ -1,15 +1,15 @@
 //! Several files in one picture: their spheres, one after another.
 
-use std::collections::HashMap;
 use std::path::Path;
 
 use pinhole::image::color::LinearRgb;
 use pinhole::scene::sphere_array::SphereArray;
 
-use super::dataset::{Column, ColumnValues, Dataset, Labels};
+use super::dataset::{Column, ColumnValues, Dataset};
 use super::error::LoadError;
 use super::file_set::FileSet;
 use super::format::{Format, Options};
+use super::labels::LabelsBuilder;
 use super::open::open_file;
 
 /// Colour of spheres to which nothing gives one, beside others that have colours.
@@ -48,17 +48,17 @@ impl Dataset {
         }
         let columns = names.into_iter().map(|(name, is_text)| {
             let of_parts = parts.iter().map(|(_, part)| (part.column(name), part.spheres.len()));
-            let values = if is_text { ColumnValues::Labels(texts(of_parts)) } else { numbers(of_parts) };
+            let values = if is_text { texts(of_parts) } else { numbers(of_parts) };
             Column { name: name.to_owned(), values }
         });
         let mut columns: Vec<Column> = columns.filter(|column| column.name != "file").collect();
         let files = parts.iter().map(|(path, part)| (path.file_name().unwrap_or_default(), part.spheres.len()));
-        let mut of_files = Texts::default();
+        let mut of_files = LabelsBuilder::default();
         for (name, count) in files {
-            let index = of_files.add(&name.to_string_lossy());
-            of_files.all.indices.resize(of_files.all.indices.len() + count, index);
+            let index = of_files.index(name.to_string_lossy().as_bytes());
+            of_files.indices.resize(of_files.indices.len() + count, index);
         }
-        columns.push(Column { name: "file".to_owned(), values: ColumnValues::Labels(of_files.all) });
+        columns.push(Column { name: "file".to_owned(), values: of_files.into_values() });
 
         let is_f64 = parts.iter().any(|(_, part)| matches!(part.spheres, SphereArray::F64(_)));
         let mut all = Self::new(if is_f64 { SphereArray::F64(Vec::new()) } else { SphereArray::F32(Vec::new()) });
@@ -104,26 +104,6 @@ fn bits(cell: [[f64; 3]; 3]) -> [[u64; 3]; 3] {
     cell.map(|edge| edge.map(f64::to_bits))
 }
 
-/// Texts, and the place of each.
-#[derive(Default)]
-struct Texts {
-    all: Labels,
-    places: HashMap<String, u32>,
-}
-
-impl Texts {
-    /// The place of a text, which is added if it is new.
-    fn add(&mut self, text: &str) -> u32 {
-        if let Some(place) = self.places.get(text) {
-            return *place;
-        }
-        let place = self.all.names.len() as u32;
-        self.all.names.push(text.to_owned());
-        self.places.insert(text.to_owned(), place);
-        place
-    }
-}
-
 fn numbers<'a>(parts: impl Iterator<Item = (Option<&'a ColumnValues>, usize)>) -> ColumnValues {
     let values = parts.flat_map(|(values, count)| match values {
         Some(ColumnValues::Numbers(numbers)) => numbers.clone(),
@@ -133,26 +113,25 @@ fn numbers<'a>(parts: impl Iterator<Item = (Option<&'a ColumnValues>, usize)>) -
 }
 
 /// The texts of a column, with numbers as texts.
-fn texts<'a>(parts: impl Iterator<Item = (Option<&'a ColumnValues>, usize)>) -> Labels {
-    let mut texts = Texts::default();
+fn texts<'a>(parts: impl Iterator<Item = (Option<&'a ColumnValues>, usize)>) -> ColumnValues {
+    let mut texts = LabelsBuilder::default();
     for (values, count) in parts {
         match values {
             Some(ColumnValues::Labels(labels)) => {
-                let renumbered: Vec<u32> = labels.names.iter().map(|name| texts.add(name)).collect();
+                let renumbered: Vec<u32> = labels.names.iter().map(|name| texts.index(name.as_bytes())).collect();
                 let of = |index: &u32| renumbered.get(*index as usize).copied().unwrap_or(u32::MAX);
-                texts.all.indices.extend(labels.indices.iter().map(of));
+                texts.indices.extend(labels.indices.iter().map(of));
             }
             Some(ColumnValues::Numbers(numbers)) => {
                 for number in numbers {
-                    let place = texts.add(&number.to_string());
-                    texts.all.indices.push(place);
+                    texts.push(number.to_string().as_bytes());
                 }
             }
             None => {
-                let empty = texts.add("");
-                texts.all.indices.resize(texts.all.indices.len() + count, empty);
+                let empty = texts.index(b"");
+                texts.indices.resize(texts.indices.len() + count, empty);
             }
         }
     }
-    texts.all
+    texts.into_values()
 }

@@ -17,7 +17,7 @@ use super::together::open_together;
 /// Returns an error if the file cannot be read, its format is not known, or an option does not apply to it.
 pub fn open(path: impl AsRef<Path>, options: &Options) -> Result<Dataset, LoadError> {
     let path = path.as_ref();
-    if let Some(set) = FileSet::of(path)?.filter(|set| !set.are_frames() && options.frame.is_none()) {
+    if let Some(set) = FileSet::together(path).filter(|_| options.frame.is_none()) {
         return open_together(&set, options);
     }
     let frame = options.frame.unwrap_or_default();
