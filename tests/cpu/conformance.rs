@@ -6,7 +6,7 @@ use pinhole::glam::DVec3;
 use pinhole::image::NO_ID;
 use pinhole::verify::conformance::{Answers, Conformance, ConformanceError, DepthKind, Rays, Reason};
 use pinhole::verify::{Checker, Outcome};
-use pinhole::{Film, LayerSet, LinearRgb, RenderSettings, Scene, View, cpu};
+use pinhole::{Film, Image, LayerSet, LinearRgb, RenderSettings, Scene, View, cpu};
 
 use crate::support::spheres;
 use crate::verify::{hostile_spheres, poses};
@@ -23,7 +23,11 @@ pub(crate) struct Layers {
 impl Layers {
     /// The layers of the reference, in f32.
     pub(crate) fn by_reference(scene: &Scene, view: &View<'_>) -> Self {
-        let image = cpu::render(scene, view, &RenderSettings::default(), LayerSet::DATA).unwrap();
+        Self::of_image(&cpu::render(scene, view, &RenderSettings::default(), LayerSet::DATA).unwrap())
+    }
+
+    /// The layers of a picture.
+    pub(crate) fn of_image(image: &Image) -> Self {
         Self {
             size: [image.width(), image.height()],
             ids: image.id().unwrap().to_vec(),

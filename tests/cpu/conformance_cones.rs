@@ -29,13 +29,7 @@ fn judged(scene: &Scene, view: View<'_>, made: &Layers) -> Conformance {
 /// The layers of a device that computes in f32.
 fn by_device(scene: &Scene, camera: &dyn Camera, habit: Habit) -> Layers {
     let mut device = LegalDevice { habit, random: fastrand::Rng::with_seed(0) };
-    let image = device.record(scene, &given(scene, camera, film())).image;
-    Layers {
-        size: [image.width(), image.height()],
-        ids: image.id().unwrap().to_vec(),
-        depths: image.depth().unwrap().iter().copied().map(f64::from).collect(),
-        normals: image.normal().unwrap().iter().map(|normal| normal.map(f64::from)).collect(),
-    }
+    Layers::of_image(&device.record(scene, &given(scene, camera, film())).image)
 }
 
 #[test]

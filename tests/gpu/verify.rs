@@ -83,7 +83,7 @@ fn certified(view: &View) -> Result<(), Failed> {
     if found.outcome() == Outcome::Violated { Err(found.to_string().into()) } else { Ok(()) }
 }
 
-/// What exact rays say of a picture with ids, depths and normals.
+/// Judges the ids, depths and normals of a picture by exact rays.
 pub(crate) fn judged_by_rays(scene: &Scene, view: pinhole::View<'_>, image: &Image) -> Conformance {
     let depths: Vec<f64> = image.depth().unwrap_or_default().iter().copied().map(f64::from).collect();
     let normals: Vec<[f64; 3]> =

@@ -58,6 +58,15 @@ fn lowest(mut low: f64, mut high: f64, f: impl Fn(f64) -> f64) -> f64 {
     0.5 * (low + high)
 }
 
+/// The end of the part of an interval, at its start, in which something holds.
+fn end_of(mut low: f64, mut high: f64, holds: impl Fn(f64) -> bool) -> f64 {
+    for _ in 0..HALVINGS {
+        let middle = 0.5 * (low + high);
+        if holds(middle) { low = middle } else { high = middle }
+    }
+    high
+}
+
 /// The distance of a point of a plane from a segment.
 fn from_segment([h, rho]: [f64; 2], [a, b]: [[f64; 2]; 2]) -> f64 {
     let ([along, up], [x, y]) = ([b[0] - a[0], b[1] - a[1]], [h - a[0], rho - a[1]]);
@@ -121,8 +130,7 @@ impl RelativeCone {
         let place @ [height, aside] = self.place(t);
         let surface = [self.side(), self.disc(0), self.disc(1)].map(|wall| from_segment(place, wall));
         let distance = surface.into_iter().fold(f64::INFINITY, f64::min);
-        let radius = self.radii[0] + (self.radii[1] - self.radii[0]) * height / self.length;
-        let is_inside = height >= 0.0 && height <= self.length && aside <= radius;
+        let is_inside = height >= 0.0 && height <= self.length && aside <= self.radius_at(height);
         if is_inside { -distance } else { distance }
     }
 
@@ -161,27 +169,23 @@ impl RelativeCone {
 
     /// The distance up to which the signed distance is above `level`, before the ray is nearest.
     fn falls_to(&self, level: f64) -> f64 {
-        self.crossing(0.0, self.nearest, |t| self.at(t) > level)
+        end_of(0.0, self.nearest, |t| self.at(t) > level)
     }
 
     /// The distance from which on the signed distance is above `level`.
     fn rises_to(&self, level: f64) -> f64 {
-        self.crossing(self.nearest, self.behind + level.abs(), |t| self.at(t) <= level)
+        end_of(self.nearest, self.behind + level.abs(), |t| self.at(t) <= level)
     }
 
-    /// The end of the part of an interval, at its start, in which something holds.
-    fn crossing(&self, mut low: f64, mut high: f64, holds: impl Fn(f64) -> bool) -> f64 {
-        for _ in 0..HALVINGS {
-            let middle = 0.5 * (low + high);
-            if holds(middle) { low = middle } else { high = middle }
-        }
-        high
+    /// The radius at a height above the start of the axis.
+    fn radius_at(&self, height: f64) -> f64 {
+        self.radii[0] + (self.radii[1] - self.radii[0]) * height / self.length
     }
 
     /// The least move for which the hit has this normal, on a wall at the given distance from the line of the ray, where a
     /// change of the normal by 1 moves by `turned`.
-    fn with_normal(&self, direction: DVec3, normal: DVec3, right: DVec3, [distance, turned]: [f64; 2]) -> f64 {
-        let along = turned * right.dot(direction);
+    fn with_normal(&self, normal: DVec3, right: DVec3, [distance, turned]: [f64; 2]) -> f64 {
+        let along = turned * right.dot(self.direction);
         let least = distance.max(turned * (normal - right).length());
         let entering = least.max(along);
         let leaving = least.max(-along).max(self.move_to_leave(self.behind));
@@ -243,26 +247,25 @@ impl Moves for RelativeCone {
             self.radii[0] + (self.radii[1] - self.radii[0]) * s
         };
         let distance = (first + way * if s.is_nan() { 0.0 } else { s }).length();
-        let of_side = (across - slope * self.axis).normalize_or_zero();
+        let of_side = |across: DVec3| (across - slope * self.axis).normalize_or_zero();
         let on_side = if across == DVec3::ZERO {
             f64::INFINITY
         } else {
-            self.with_normal(direction, normal, of_side, [distance, radius])
+            self.with_normal(normal, of_side(across), [distance, radius])
         };
         // The same by where the line of the ray meets the side: on flat cones, rounding a normal turns it around the axis.
         let met = [self.falls_to(0.0), self.rises_to(0.0)].map(|t| {
             let from_start = self.origin - self.ends[0] + t * direction;
             let height = from_start.dot(self.axis);
             let across = (from_start - height * self.axis).normalize_or_zero();
-            let radius = self.radii[0] + (self.radii[1] - self.radii[0]) * (height / self.length).clamp(0.0, 1.0);
-            let right = (across - slope * self.axis).normalize_or_zero();
-            self.with_normal(direction, normal, right, [from_segment(self.place(t), self.side()), radius])
+            let radius = self.radius_at(height.clamp(0.0, self.length));
+            self.with_normal(normal, of_side(across), [from_segment(self.place(t), self.side()), radius])
         });
         let closed = (0..2).filter(|end| self.are_closed[*end]);
         let on_discs = closed.map(|end| {
             let outward = [-self.axis, self.axis][end];
             let size = self.length.max(self.radii[end]);
-            self.with_normal(direction, normal, outward, [self.disc_beside(end, [0.0, self.behind]), size])
+            self.with_normal(normal, outward, [self.disc_beside(end, [0.0, self.behind]), size])
         });
         on_discs.chain(met).fold(on_side, f64::min)
     }

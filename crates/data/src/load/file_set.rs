@@ -27,11 +27,8 @@ impl FileSet {
     /// Returns an error if there are no such files, or their folder cannot be read.
     pub fn of(path: &Path) -> Result<Option<Self>, LoadError> {
         let Some((folder, [before, middle, after])) = parts(path) else { return Ok(None) };
-        if middle != "*" {
-            let names = middle.trim_matches(['{', '}']).split(',');
-            let are_frames = names.clone().all(is_number);
-            let files = names.map(|name| folder.join(format!("{before}{name}{after}"))).collect();
-            return Ok(Some(Self { files, are_frames }));
+        if let Some(set) = Self::listed((folder, [before, middle, after])) {
+            return Ok(Some(set));
         }
         let mut found = Vec::new();
         let listed = if folder.as_os_str().is_empty() { Path::new(".") } else { folder };
@@ -51,7 +48,15 @@ impl FileSet {
     /// The files for which a path stands if they are seen together, and are no frames.
     #[must_use]
     pub fn together(path: &Path) -> Option<Self> {
-        Self::of(path).ok().flatten().filter(|set| !set.are_frames)
+        Self::listed(parts(path)?).filter(|set| !set.are_frames)
+    }
+
+    /// The files whose names stand in braces, which no folder is searched for.
+    fn listed((folder, [before, middle, after]): Parts<'_>) -> Option<Self> {
+        let names = middle.strip_prefix('{')?.strip_suffix('}')?.split(',');
+        let are_frames = names.clone().all(is_number);
+        let files = names.map(|name| folder.join(format!("{before}{name}{after}"))).collect();
+        Some(Self { files, are_frames })
     }
 
     /// Returns true if the name at the end of a path stands for several files.
