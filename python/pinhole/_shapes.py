@@ -75,8 +75,10 @@ class Shapes:
 
     def _text(self, settings: Mapping[str, Any]) -> Text:
         tables = _settings.picture_settings(settings)
-        _, of_kind, usual, _ = self._data.kind()
+        _, of_kind, usual, _, look = self._data.kind()
         style = _settings.style_of(tables)
+        if not any(key in tables for key in ("style", "integrator", "studio", "background")):
+            of_kind += look
         if style == "default" and usual is not None and "style" not in tables and "background" not in tables:
             style = usual
         tables = {"style": style, **tables}

@@ -65,8 +65,8 @@ pub(crate) struct SphereData {
 /// A camera, a direction of view, the direction that is up, and that of another view.
 type ViewOfData = (String, Option<[f64; 3]>, [f64; 3], Option<[f64; 3]>);
 
-/// The name of a kind, settings about data, the style, and the view.
-type KindOfData = (Option<&'static str>, String, Option<&'static str>, Option<ViewOfData>);
+/// The name of a kind, settings about data, the style, the view, and changes of the style.
+type KindOfData = (Option<&'static str>, String, Option<&'static str>, Option<ViewOfData>, String);
 
 impl SphereData {
     /// Makes spheres from loaded data.
@@ -250,14 +250,20 @@ impl SphereData {
     /// The name of the kind of data, and the settings that follow from it: keys of a scene file about data, the style, and
     /// the camera with its direction, the direction that is up, and that of another view.
     fn kind(&self) -> KindOfData {
-        let KindSettings { data, style, view, .. } = &self.kind;
+        let KindSettings { data, style, view, look, .. } = &self.kind;
         let of_views = self.traits.as_ref().map(|traits| KindSettings::new(traits, None, |key| key == "view"));
         let up_of_views = of_views.and_then(|settings| settings.view).map(|view| view.up.to_array());
         let view = view.as_ref();
         let view = view.map(|KindView { camera, direction, up }| {
             (camera.clone(), direction.map(|direction| direction.to_array()), up.to_array(), up_of_views)
         });
-        (self.traits.as_ref().map(|traits| traits.kind.name()), data.clone(), style.map(Style::name), view)
+        (
+            self.traits.as_ref().map(|traits| traits.kind.name()),
+            data.clone(),
+            style.map(Style::name),
+            view,
+            look.clone(),
+        )
     }
 
     /// The meaning of colours, if a column gives them.
@@ -322,8 +328,15 @@ impl SphereData {
             let this = this.get();
             let (scene, version) = this.versioned();
             let mut look = this.look(&scene, &text)?;
-            let layers_of_look = look.layers(layers);
-            let rendered = this.on_device.render((&scene, version), &look, layers_of_look, backend, stop)?;
+            let wanted = look.layers(layers);
+            let for_ghosts = scene.ghosts().map_or(LayerSet::COLOR, |_| LayerSet::OF_GHOSTS);
+            let layers_of_look = wanted.iter().chain(for_ghosts.iter()).collect();
+            let mut rendered = this.on_device.render((&scene, version), &look, layers_of_look, backend, stop)?;
+            if let Some(ghosts) = scene.ghosts() {
+                look.settings = look.settings.for_ghosts();
+                let over = OnDevice::default().render((ghosts, 0), &look, LayerSet::OF_GHOSTS, backend, stop)?;
+                rendered.image = rendered.image.with_ghosts(&over.image, wanted);
+            }
             look.notes.extend(rendered.warning);
             Ok(Picture {
                 image: rendered.image,

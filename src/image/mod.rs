@@ -7,6 +7,7 @@ use bytemuck::{Pod, cast_slice, cast_slice_mut, cast_vec};
 pub mod color;
 pub mod denoise;
 pub mod encoding;
+mod ghosts;
 mod layer;
 pub(crate) mod outline;
 mod parts;

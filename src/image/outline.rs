@@ -14,7 +14,7 @@ use crate::range::RangeError;
 #[derive(Clone, Copy, Debug, PartialEq, serde::Serialize, serde::Deserialize)]
 #[serde(default, deny_unknown_fields)]
 pub struct Outline {
-    /// Width of the outline in pixels: 0.5 to 64.
+    /// Width of the outline in pixels: 0.5 to 64, and in a file 0 for none.
     pub width: f32,
     /// Colour of the outline.
     pub color: LinearRgb,
@@ -64,10 +64,16 @@ struct Spot {
     normal: [f32; 3],
 }
 
+impl Spot {
+    fn is_nearer_than(self, other: Self) -> bool {
+        self.id != NO_ID && (other.id == NO_ID || self.depth <= other.depth)
+    }
+}
+
 /// Draws an outline along every edge between two pixels where one sphere hides another or their normals differ. Edges
 /// between pixels form stairs, so the line follows a smooth curve through them. The distance of a pixel from that curve
-/// gives the fraction that the line covers. A picture that lacks one of [`Outline::layers`]
-/// does not change.
+/// gives the fraction that the line covers. Lines around things that are hardly wider than them are [faint](left_along).
+/// A picture that lacks one of [`Outline::layers`] does not change.
 pub(crate) fn draw(image: &mut Image, outline: &Outline) {
     let Some(coverage) = coverage(image, outline) else { return };
     let line = outline.color.to_array();
@@ -100,12 +106,78 @@ fn strengths(image: &Image, outline: &Outline) -> Option<impl Fn(usize, usize) -
     }
     let normal = move |index: usize| normals.map_or([0.0; 3], |normals| normals[index]);
     let spot = move |index: usize| Spot { id: ids[index], depth: depths[index], normal: normal(index) };
-    Some(move |a, b| strength(spot(a), spot(b), outline))
+    let size = [image.width() as usize, image.height() as usize];
+    Some(move |a, b| {
+        let strength_of = |a: usize, b: usize| strength(spot(a), spot(b), outline);
+        let is_nearer = |a: usize, b: usize| spot(a).is_nearer_than(spot(b));
+        let full = strength_of(a, b);
+        if full <= 0.0 {
+            return full;
+        }
+        let edge = if is_nearer(a, b) { [a, b] } else { [b, a] };
+        let extent =
+            extent(size, edge, outline.width, |from, to| match (strength_of(from, to) > 0.0, is_nearer(from, to)) {
+                (false, _) => Step::Within,
+                (true, true) => Step::Off,
+                (true, false) => Step::Behind,
+            });
+        full * left_along(extent, outline.width)
+    })
+}
+
+/// A step from a pixel of a thing to the next one.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(crate) enum Step {
+    /// To the same thing.
+    Within,
+    /// Off the thing, to what lies behind it.
+    Off,
+    /// To what hides the thing.
+    Behind,
+}
+
+/// The number of pixels that a thing covers in the direction away from its edge, which is given by the pixel of the thing
+/// and the one beyond the edge. At most [`wide`], which stands for more too, and for what is hidden or outside.
+pub(crate) fn extent(
+    [columns, height]: [usize; 2],
+    [mut at, mut before]: [usize; 2],
+    width: f32,
+    step: impl Fn(usize, usize) -> Step,
+) -> usize {
+    let most = wide(width);
+    for count in 1..most {
+        let along = |at: usize, before: usize, size: usize| (2 * at).checked_sub(before).filter(|next| *next < size);
+        let column = along(at % columns, before % columns, columns);
+        let (Some(i), Some(j)) = (column, along(at / columns, before / columns, height)) else { return most };
+        let next = j * columns + i;
+        match step(at, next) {
+            Step::Within => (before, at) = (at, next),
+            Step::Off => return count,
+            Step::Behind => return most,
+        }
+    }
+    most
+}
+
+/// The number of pixels from which on a thing is wide, so that lines around it have their full strength.
+fn wide(width: f32) -> usize {
+    (7.5 * width).ceil() as usize
+}
+
+/// The fraction of its strength that a line keeps along a thing of this [extent]. The two lines at the sides of a thing as
+/// wide as them would cover it, with gaps where pixels form stairs. It is never 0, so that curves do not end there.
+pub(crate) fn left_along(extent: usize, width: f32) -> f32 {
+    ((extent as f32 / width - 3.5) / 4.0).clamp(0.03, 1.0)
 }
 
 /// The distance along each axis, in pixels, beyond which an edge does not reach a pixel.
 pub(crate) fn halo(width: f32) -> usize {
     PASSES + (0.5 * width).ceil() as usize + 2
+}
+
+/// The distance along each axis, in pixels, beyond which what is hit has no effect on the lines in a pixel.
+pub(crate) fn reach(width: f32) -> usize {
+    halo(width) + wide(width)
 }
 
 /// The fraction of each pixel that lines of this width cover, given the strength of the line between two pixels.

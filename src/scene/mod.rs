@@ -25,6 +25,7 @@ mod duplicates;
 mod error;
 mod focus;
 mod frame;
+mod ghosts;
 pub mod material;
 mod shared;
 pub mod sphere;
@@ -63,6 +64,7 @@ pub struct Scene {
     whole: Option<SceneExtent>,
     /// The spheres that a camera frames in the place of all shapes, and their box.
     focus: Option<Arc<(Vec<[f32; 4]>, Bounds)>>,
+    ghosts: Option<Arc<Self>>,
 }
 
 impl Scene {
@@ -190,7 +192,7 @@ impl Scene {
     ) -> Self {
         let shapes = Arc::new(SharedShapes::new(spheres, cones));
         let appearance = Arc::new(SceneAppearance::new(appearance, shapes.len()));
-        Self { origin, shapes, appearance, bounds, added: 0, whole: None, focus: None }
+        Self { origin, shapes, appearance, bounds, added: 0, whole: None, focus: None, ghosts: None }
     }
 
     /// The shapes, all with these surface properties.

@@ -14,7 +14,7 @@ use crate::output::scene;
 use crate::proof::{certified, render_certified};
 use crate::render::renderer::renderer;
 use crate::render::views::{Shot, views_of};
-use crate::render::{Job, render_joined, render_views};
+use crate::render::{Job, render_joined, with_ghosts};
 use crate::terminal::failure::Failure;
 #[cfg(feature = "gpu")]
 use crate::terminal::profile;
@@ -141,11 +141,11 @@ fn run_measured(args: &RenderArgs) -> Result<(), Failure> {
     }
     let text = |path: &PathBuf| Ok((path.clone(), scene::text(&input, path.parent())?));
     let saved = scene_path.map(text).transpose().map_err(Failure::Job)?;
-    let shot = Shot { input: &input, views, layers, stop_rule, opened };
+    let shot = Shot::new(&input, views, layers, stop_rule, opened);
     if job.stereo == Some(Stereo::TwoFiles) {
         let outputs = outputs.of_eyes()?;
         outputs.iter().try_for_each(|outputs| outputs.check_not_inputs(&input.files))?;
-        let images = render_views(&shot)?;
+        let images = with_ghosts(&shot)?;
         Outputs::write_both(&outputs, &images, &encoding, adapter, saved.as_ref())?;
         said(quiet, &input, started);
         return Ok(());

@@ -145,7 +145,7 @@ pub(crate) fn run(args: &RenderArgs, wanted: &SeriesRequest, job: Job) -> Result
             pictures.begin();
             let (views, layers, opened) =
                 (&views_of(input, input.film), writing.layers, renderer(&opened, input, quiet));
-            let image = render_joined(&Shot { input, views, layers, stop_rule, opened })?;
+            let image = render_joined(&Shot::new(input, views, layers, stop_rule, opened))?;
             Ok(pictures.send(number, image))
         })
     })?;

@@ -134,7 +134,7 @@ impl Source {
         let (of_kind, scene, mut details) = self.scene_of(&file)?;
         file = of_kind.unwrap_or(file);
         details.notes.extend(of_cones);
-        if scene.is_empty() && matches!(self.format, Format::Data(_)) {
+        if scene.is_empty() && scene.ghosts().is_none() && matches!(self.format, Format::Data(_)) {
             details.notes.push(format!(
                 "{}: the file has no spheres, so the picture shows only the background",
                 self.path.display()

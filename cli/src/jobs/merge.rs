@@ -109,19 +109,17 @@ fn write(folder: &Folder, recipe: Recipe, devices: &Devices) -> Result<usize, Fa
         return Ok(0);
     };
     devices.check(&opened)?;
-    let input = &series.input;
-    check_same(&folder.manifest, Some(&all), input)?;
+    check_same(&folder.manifest, Some(&all), &series.input)?;
     check_layers(folder, writing.layers)?;
+    let mut places = 0..;
     writing.write(&wanted, all.len(), adapter, |written| {
-        for (place, number) in all.iter().enumerate() {
+        // Lines depend on the camera of each picture.
+        series.for_each(|number, input| {
             written.begin();
-            let joined = picture(folder, place)?;
+            let joined = picture(folder, places.next().unwrap_or_default())?;
             let image = finish_joined(joined, &input.settings, writing.layers, renderer(&opened, input, true))?;
-            if !written.send(*number, image) {
-                break;
-            }
-        }
-        Ok(())
+            Ok(written.send(number, image))
+        })
     })
 }
 

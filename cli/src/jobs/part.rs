@@ -105,7 +105,7 @@ impl Work<'_> {
         let pictures = if let Some([first, end]) = manifest.groups.get(unit) {
             let bricks = input.bricks.clone().context("the input is not a file of bricks")?;
             let (views, stop_rule) = (&views_of(input, input.film), StopRule::default());
-            let shot = Shot { input, views, layers, stop_rule, opened };
+            let shot = Shot::new(input, views, layers, stop_rule, opened);
             check_device(&shot)?;
             Pictures::Depth(nearest_of(&bricks, *first..*end, &shot)?)
         } else {

@@ -13,6 +13,7 @@ use crate::input::Input;
 use crate::jobs::args::{Recipe, SplitArgs};
 use crate::jobs::manifest::{MOST_UNITS, Manifest, NAME, UnitKind, VERSION, layer_names, parse_tiles, units_of_tiles};
 use crate::output::files::{name_all, unnamed};
+use crate::render::ghosts;
 use crate::terminal::failure::Failure;
 use crate::terminal::progress::{self, tell};
 use crate::terminal::text::in_quotes;
@@ -159,6 +160,7 @@ fn job_input(recipe: Recipe) -> Result<JobInput, Failure> {
     let Some(wanted) = wanted else {
         let mut input = job.source.load()?;
         input.notes.iter().for_each(|text| note(text));
+        ghosts::refuse(&input, "a picture in parts")?;
         let (encoding, _) = job.finish(&mut input, note)?;
         let layers = job.outputs.layers(&encoding);
         return Ok(JobInput { input, layers, pictures: None, overview: None });
@@ -166,6 +168,7 @@ fn job_input(recipe: Recipe) -> Result<JobInput, Failure> {
     let none = || anyhow!("no picture is asked for");
     let Ready { series, writing, overview, all, .. } =
         ready(&args, &wanted, job, ReadyOptions::default())?.ok_or_else(none)?;
+    ghosts::refuse(&series.input, "pictures in parts")?;
     Ok(JobInput { input: series.input, layers: writing.layers, pictures: Some(all), overview })
 }
 

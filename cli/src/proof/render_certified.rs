@@ -7,9 +7,9 @@ use crate::input::Input;
 use crate::output::picture::Outputs;
 use crate::proof::certified::{self, FilePicture};
 use crate::render::device::OpenDevice;
-use crate::render::render_joined;
 use crate::render::stop_rule::StopRule;
 use crate::render::views::{Shot, views_of};
+use crate::render::{ghosts, render_joined};
 use crate::terminal::failure::Failure;
 use crate::terminal::progress;
 use pinhole::image::encoding::Encoding;
@@ -27,10 +27,11 @@ pub(crate) fn run(
     encoding: &Encoding,
     opened: &OpenDevice,
 ) -> Result<Result<(), Failure>, Failure> {
+    ghosts::refuse(input, "--certify")?;
     let layers = outputs.layers(encoding).with(Layer::Samples);
     let image = {
         let views = &views_of(input, input.film);
-        render_joined(&Shot { input, views, layers, stop_rule, opened })?
+        render_joined(&Shot::new(input, views, layers, stop_rule, opened))?
     };
     let samples = image.samples().unwrap_or_default();
     let count = samples.first().copied().unwrap_or(1);

@@ -1,5 +1,6 @@
 //! The job of `pinhole render`, and the pictures that a device or the CPU renders for it.
 
+use std::iter::zip;
 use std::path::Path;
 
 use anyhow::Context;
@@ -25,18 +26,21 @@ use crate::terminal::progress::{self, tell};
 use crate::terminal::{interrupt, memory, profile};
 #[cfg(feature = "gpu")]
 use pinhole::accel::AccelChoice;
-#[cfg(feature = "gpu")]
-use pinhole::camera::View;
 use pinhole::camera::film::Film;
+#[cfg(feature = "gpu")]
+use pinhole::camera::{Camera, View};
 use pinhole::cpu::{self, SampledPicture, SearchPlan};
 #[cfg(feature = "gpu")]
 use pinhole::gpu::{GpuError, Headless, PictureRequest, RenderPlan, Wait};
 use pinhole::image::encoding::Encoding;
 use pinhole::image::{Image, LayerSet};
 use pinhole::render::{Picture, RenderSettings};
+#[cfg(feature = "gpu")]
+use pinhole::scene::Scene;
 use pinhole_figure::annotate::Annotations;
 
 pub(crate) mod device;
+pub(crate) mod ghosts;
 pub(crate) mod renderer;
 pub(crate) mod stop_rule;
 pub(crate) mod views;
@@ -101,7 +105,7 @@ pub(crate) fn render_part(
     let unfinished = input.settings.unfinished();
     let finished = std::mem::replace(&mut input.settings, unfinished);
     let (views, stop_rule) = (&views_of(input, part), StopRule::default());
-    let images = render_views(&Shot { input, views, layers, stop_rule, opened });
+    let images = render_views(&Shot::new(input, views, layers, stop_rule, opened));
     input.settings = finished;
     images
 }
@@ -137,12 +141,12 @@ pub(crate) fn finish(
 /// Renders the view of the camera, or from the middle between two eyes.
 pub(crate) fn render(input: &Input, layers: LayerSet, on: &OpenDevice) -> Result<Image, Failure> {
     let (views, stop_rule) = (&[input.view()], StopRule::default());
-    render_joined(&Shot { input, views, layers, stop_rule, opened: on })
+    joined(render_views(&Shot::new(input, views, layers, stop_rule, on))?)
 }
 
-/// Renders the picture, or the pictures of both eyes side by side.
+/// Renders the picture, or the pictures of both eyes side by side, with ghosts.
 pub(crate) fn render_joined(shot: &Shot<'_>) -> Result<Image, Failure> {
-    joined(render_views(shot)?)
+    joined(with_ghosts(shot)?)
 }
 
 fn joined(mut images: Vec<Image>) -> Result<Image, Failure> {
@@ -151,6 +155,16 @@ fn joined(mut images: Vec<Image>) -> Result<Image, Failure> {
         return Ok(joined.context("the pictures of both eyes cannot be joined")?);
     }
     Ok(images.pop().context("there is no picture")?)
+}
+
+/// Renders the views with the ghosts of the scene over them.
+pub(crate) fn with_ghosts(shot: &Shot<'_>) -> Result<Vec<Image>, Failure> {
+    let Some(ghosts) = shot.scene.ghosts() else { return render_views(shot) };
+    let settings = &shot.settings.for_ghosts();
+    let layers: LayerSet = shot.layers.iter().chain(LayerSet::OF_GHOSTS.iter()).collect();
+    let images = render_views(&Shot { layers, ..*shot })?;
+    let over = render_views(&Shot { scene: ghosts, settings, layers: LayerSet::OF_GHOSTS, ..*shot })?;
+    Ok(zip(images, over).map(|(image, over)| image.with_ghosts(&over, shot.layers)).collect())
 }
 
 /// Renders on the device, and tells the user if it is not the expected one.
@@ -186,15 +200,15 @@ pub(crate) fn check_device(shot: &Shot<'_>) -> Result<(), Failure> {
 
 /// Refuses pictures that do not fit into memory.
 fn check_on_cpu(shot: &Shot<'_>) -> Result<(), Failure> {
-    let Shot { input, views, layers, .. } = *shot;
-    let is_lit = !input.settings.integrator.is_primary();
+    let Shot { input, settings, views, layers, .. } = *shot;
+    let is_lit = !settings.integrator.is_primary();
     let sums = if is_lit { SampledPicture::BYTES_PER_PIXEL } else { 0 };
     let extra = extra_bytes_per_pixel(views, layers) + sums;
     memory::check(&shot.film(), &input.size_from, layers, extra)
 }
 
 fn on_cpu(shot: &Shot<'_>) -> Result<Vec<Image>, Failure> {
-    let Shot { input: Input { scene, settings, .. }, views, layers, stop_rule, .. } = *shot;
+    let Shot { scene, settings, views, layers, stop_rule, .. } = *shot;
     let pixels = shot.film().pixel_count();
     let plan = SearchPlan::new(scene);
     let what = format!("a structure of {} spheres needs", scene.len());
@@ -246,11 +260,11 @@ pub(crate) const MOST_BY_TILES: usize = 2;
 
 #[cfg(feature = "gpu")]
 fn on_gpu(headless: &Headless, shot: &Shot<'_>, choice: AccelChoice) -> Result<Vec<Image>, Failure> {
-    let Shot { input, views, layers, stop_rule, .. } = *shot;
-    let Input { scene, settings, .. } = input;
+    let Shot { input, scene, settings, views, layers, stop_rule, .. } = *shot;
     let is_lit = !settings.integrator.is_primary();
     let pixels = shot.film().pixel_count();
-    let plan = |choice| plan(headless, input, views, layers, choice, views.len() <= MOST_BY_TILES);
+    let subject = (scene, settings, input.camera.as_ref());
+    let plan = |choice| plan_of(headless, subject, views, layers, choice, views.len() <= MOST_BY_TILES);
     let rendered = with_structures(headless, choice, plan, |plan| {
         let mut too_short = None;
         let (done, is_stopped) = interrupt::keeping(|| {
@@ -297,8 +311,20 @@ pub(crate) fn plan(
     choice: AccelChoice,
     is_only: bool,
 ) -> RenderPlan {
+    plan_of(headless, (&input.scene, &input.settings, input.camera.as_ref()), views, layers, choice, is_only)
+}
+
+#[cfg(feature = "gpu")]
+fn plan_of(
+    headless: &Headless,
+    (scene, settings, camera): (&Scene, &RenderSettings, &dyn Camera),
+    views: &[View<'_>],
+    layers: LayerSet,
+    choice: AccelChoice,
+    is_only: bool,
+) -> RenderPlan {
     let host_bytes_per_pixel = extra_bytes_per_pixel(views, layers);
-    let view = View::new(input.camera.as_ref(), views[0].film);
-    let request = PictureRequest::new(&input.scene, &view, &input.settings, layers);
+    let view = View::new(camera, views[0].film);
+    let request = PictureRequest::new(scene, &view, settings, layers);
     headless.plan(&PictureRequest { host_bytes_per_pixel, is_only, ..request }, choice)
 }

@@ -7,11 +7,16 @@ use crate::terminal::memory;
 use pinhole::camera::View;
 use pinhole::camera::film::Film;
 use pinhole::image::LayerSet;
+use pinhole::render::RenderSettings;
+use pinhole::scene::Scene;
 
 /// A picture to render: its input and views, the rule that stops sampling, and the device.
 #[derive(Clone, Copy)]
 pub(crate) struct Shot<'a> {
     pub(crate) input: &'a Input,
+    /// The scene of the input, or its ghosts.
+    pub(crate) scene: &'a Scene,
+    pub(crate) settings: &'a RenderSettings,
     /// One view, or those of the left and of the right eye, on the same film.
     pub(crate) views: &'a [View<'a>],
     pub(crate) layers: LayerSet,
@@ -19,7 +24,17 @@ pub(crate) struct Shot<'a> {
     pub(crate) opened: &'a OpenDevice,
 }
 
-impl Shot<'_> {
+impl<'a> Shot<'a> {
+    pub(crate) fn new(
+        input: &'a Input,
+        views: &'a [View<'a>],
+        layers: LayerSet,
+        stop_rule: StopRule,
+        opened: &'a OpenDevice,
+    ) -> Self {
+        Self { input, scene: &input.scene, settings: &input.settings, views, layers, stop_rule, opened }
+    }
+
     pub(crate) fn film(&self) -> Film {
         self.views[0].film
     }

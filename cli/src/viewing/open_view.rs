@@ -16,6 +16,7 @@ use super::RenderFlags;
 use super::ViewError;
 use crate::input::read_file::Format;
 use crate::input::{FramedScene, Input, OpenFrames, Source};
+use crate::render::ghosts;
 use crate::terminal::failure::Failure;
 
 /// The meaning of [`RenderFlags`]: the spheres of a file, a camera with a film, and the settings of the picture.
@@ -96,6 +97,7 @@ impl OpenView {
         let mut input = source.input_with(contents, look)?;
         let mut notes = std::mem::take(&mut input.notes);
         notes.extend(frames.note.clone());
+        notes.extend(ghosts::note(&input, "not drawn in a window"));
         let sky = input.sky_image.clone().zip(sky);
         let (encoding, annotations) = (Encoding::default(), Annotations::default());
         let flags = flags.clone();

@@ -245,8 +245,8 @@ fn the_line_about_a_picture_has_flags_to_use_again() {
         "water.xyz: 3 atoms, 2 bonds; --kind molecules --style flat --view 30,20 --turn 5"
     );
     assert_eq!(start("scene.toml"), "scene.toml: 1 sphere");
-    assert_eq!(start("kinds.csv"), "kinds.csv: 3 atoms; --style default --view z --color-by species");
-    assert_eq!(start("kinds.csv --color red"), "kinds.csv: 3 atoms; --style default --view z");
+    assert_eq!(start("kinds.csv"), "kinds.csv: 3 atoms; --kind particles --style default --view z --color-by species");
+    assert_eq!(start("kinds.csv --color red"), "kinds.csv: 3 atoms; --kind particles --style default --view z");
     assert_eq!(said("water.xyz --quiet"), None);
 }
 

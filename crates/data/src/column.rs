@@ -25,7 +25,7 @@ pub struct NamedColumn<'a> {
 #[non_exhaustive]
 pub enum ColumnError {
     /// The data has no column of this name.
-    #[error("there is no column `{name}`;{} the columns are {columns}",
+    #[error("there is no column `{name}`{};{} the columns are {columns}", why_none(.name),
         .nearest.as_ref().map_or(String::new(), |nearest| format!(" did you mean `{nearest}`?")))]
     Unknown {
         /// The name as given.
@@ -92,8 +92,22 @@ pub fn column<'a>(name: &str, spheres: &SphereArray, columns: &'a [Column]) -> R
     let is_found = |other: &&&str| named(other, columns).is_some() || BUILT_IN.contains(other);
     match key.and_then(|key| key.columns.iter().find(is_found)) {
         Some(other) if !other.eq_ignore_ascii_case(name) => column(other, spheres, columns),
-        _ => Err(unknown(name, columns)),
+        _ => match component(name, columns) {
+            Some(other) => column(other, spheres, columns),
+            None => Err(unknown(name, columns)),
+        },
     }
+}
+
+/// The column of a component of a vector whose name is spelled otherwise, such as `Force.Z` or `force_z` for `forces.z`.
+fn component<'a>(name: &str, columns: &'a [Column]) -> Option<&'a str> {
+    let (vector, axis) = name.rsplit_once(['.', '_', ' '])?;
+    let plain = |text: &str| text.to_lowercase().trim_end_matches('s').to_owned();
+    let is_same = |column: &&Column| {
+        let parts = column.name.rsplit_once('.');
+        parts.is_some_and(|(other, of)| of.eq_ignore_ascii_case(axis) && plain(other) == plain(vector))
+    };
+    columns.iter().find(is_same).map(|column| column.name.as_str()).filter(|found| *found != name)
 }
 
 /// A vector of each sphere: its name, spelled as in the data, and its three components.
@@ -213,6 +227,21 @@ fn vectors(columns: &[Column]) -> impl Iterator<Item = String> {
         components(stem, columns).map(|(vector, _)| format!("|{vector}|"))
     });
     lengths.filter(|name| name != "||")
+}
+
+/// Why data never has what other programs compute.
+fn why_none(name: &str) -> &'static str {
+    match name.to_lowercase().replace([' ', '_', '-'], "").as_str() {
+        "ss" | "structure" | "secondary" | "secondarystructure" | "dssp" => {
+            ", as secondary structures are not computed"
+        }
+        "cna" | "ptm" | "structuretype" | "coordination" | "coordinationnumber" | "centrosymmetry" | "csp" => {
+            ", as structures are not analyzed; compute it elsewhere, and add a column to the file"
+        }
+        "spectrum" | "rainbow" | "resids" => ", and residue_number with the map turbo colors a chain from end to end",
+        "density" | "localdensity" => ", as densities are not computed; add a column to the file",
+        _ => "",
+    }
 }
 
 fn unknown(name: &str, columns: &[Column]) -> ColumnError {

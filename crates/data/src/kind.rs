@@ -1,6 +1,7 @@
 //! Kinds of data, such as crystals and biomolecules, which are drawn in different ways if nobody says how.
 
 mod axes;
+mod curve;
 mod whole;
 
 use glam::{DMat3, DVec3};
@@ -35,13 +36,15 @@ pub enum Kind {
     Particles,
     /// Many points of which a few are far away.
     Stars,
+    /// Points without radii in the order of a smooth curve.
+    Curve,
     /// Anything else.
     Plain,
 }
 
 impl Kind {
     /// All kinds, in the order in which they are tried.
-    pub const ALL: [Self; 12] = [
+    pub const ALL: [Self; 13] = [
         Self::Scan,
         Self::Coarse,
         Self::Biomolecule,
@@ -53,6 +56,7 @@ impl Kind {
         Self::Polymer,
         Self::Particles,
         Self::Stars,
+        Self::Curve,
         Self::Plain,
     ];
 
@@ -71,6 +75,7 @@ impl Kind {
             Self::Polymer => "polymer",
             Self::Particles => "particles",
             Self::Stars => "stars",
+            Self::Curve => "curve",
             Self::Plain => "plain",
         }
     }
@@ -108,7 +113,10 @@ const SCAN: usize = 1_000;
 const FRAMED: usize = 1_000;
 const SAMPLE: usize = 1 << 17;
 const WITHIN: [f64; 2] = [0.005, 0.995];
-const STARS_WITHIN: [f64; 2] = [0.02, 0.98];
+const STARS_WITHIN: [f64; 2] = [0.005, 0.995];
+
+/// The most spheres of which as many as possible shall be seen.
+const CLEAR: usize = 100;
 
 /// The part of the longest side that a side of flat data has at most, and the part of the diagonal of the box that a point
 /// needs as its radius to be seen.
@@ -122,7 +130,7 @@ pub struct Traits {
     pub kind: Kind,
     /// Returns true if the data has a periodic cell of its own, and not that of a crystal of which it is a part.
     pub has_cell: bool,
-    /// The median distance to the nearest neighbour.
+    /// The median distance to the nearest neighbour; for a scan, that which 90 % have at most.
     pub spacing: f64,
     /// The direction, of length 1, in which the widest empty layer of the cell lies; that of the third edge if there is
     /// none.
@@ -146,8 +154,11 @@ pub struct Traits {
     pub bulk: Option<[DVec3; 2]>,
     /// Returns true if nothing in the data gives colours: no colours, species or types.
     pub is_uncolored: bool,
-    /// A radius with which few points can be seen, if they have none and about touch where they are small.
+    /// A radius with which few points can be seen, if they have none and about touch where they are small; that of the tube
+    /// for a curve.
     pub seen_radius: Option<f64>,
+    /// Returns true if the data has points without radii.
+    pub are_points: bool,
     /// The axis along which the data has no extent, if there is just one.
     pub flat: Option<usize>,
 }
@@ -170,6 +181,7 @@ impl Traits {
             bulk: None,
             is_uncolored,
             seen_radius: None,
+            are_points: false,
             flat: None,
         }
     }
@@ -199,11 +211,8 @@ impl Traits {
         let cell = PeriodicCell::of(data).filter(|_| !data.is_part_of_crystal).map(|cell| cell.edges);
         if asked.is_none() && species.is_none() && !has_residues && cell.is_none() && data.bonds.is_empty() {
             // Large data of this kind is common, so it takes no more than one look at each sphere.
-            if count >= SCAN
-                && data.colors.is_some()
-                && let Some((radius, _)) = data.guessed_radius()
-            {
-                return Self { kind: Kind::Scan, spacing: 2.0 * radius, bulk: bulk(data, WITHIN), ..plain() };
+            if count >= SCAN && data.colors.is_some() && data.guessed_radius().is_some() {
+                return Self { kind: Kind::Scan, spacing: scan_spacing(data), bulk: bulk(data, WITHIN), ..plain() };
             }
             let radius = |index: usize| data.spheres.at(index)[3].to_bits();
             let may_be_stars =
@@ -213,9 +222,15 @@ impl Traits {
                 None => {
                     let extent = extent(data);
                     let mut flat = (0..3).filter(|axis| extent[*axis] <= FLAT * extent.max_element());
+                    let is_curve = data.guessed_radius().is_some() && curve::is_curve(data, extent.length());
                     Self {
+                        kind: if is_curve { Kind::Curve } else { Kind::Plain },
                         bulk: bulk(data, WITHIN),
-                        seen_radius: seen_radius(data, extent),
+                        are_points: data.guessed_radius().is_some(),
+                        seen_radius: match is_curve {
+                            true => curve::radius(data, extent.length()),
+                            false => seen_radius(data, extent),
+                        },
                         flat: if flat.clone().count() == 1 { flat.next() } else { None },
                         ..plain()
                     }
@@ -237,10 +252,12 @@ impl Traits {
         };
         let metals = with_species(|symbol| symbol.is_some_and(is_metal));
         let has_beads = !has_residues && 10 * with_species(|symbol| symbol.is_none()) > count;
+        // Some atoms of all are far apart, too.
+        let are_coarse = || !are_atoms || (spacing >= BEADS && are_guides(data));
         let found = || {
             if count < if cell.is_some() { 1 } else { 2 } {
                 Kind::Plain
-            } else if has_residues && residues_of(data, &polymer) >= 3 && (!are_atoms || spacing >= BEADS) {
+            } else if has_residues && residues_of(data, &polymer) >= 3 && are_coarse() {
                 Kind::Coarse
             } else if has_residues && residues_of(data, &polymer) >= 3 {
                 Kind::Biomolecule
@@ -271,7 +288,7 @@ impl Traits {
         Self {
             kind,
             has_cell: cell.is_some(),
-            spacing,
+            spacing: if kind == Kind::Scan { scan_spacing(data) } else { spacing },
             up: if kind == Kind::Slab { gap_up } else { third },
             is_metal: 2 * metals > count,
             has_chains: has_several(data, &polymer),
@@ -280,9 +297,21 @@ impl Traits {
             beads_lack: data.unknown_lack().map(|lack| lack && has_beads),
             widest_view: if is_turned { widest_view(data, &water) } else { None },
             bulk: bulk(data, if kind == Kind::Stars { STARS_WITHIN } else { WITHIN }),
+            seen_radius: (kind == Kind::Curve).then(|| curve::radius(data, extent(data).length())).flatten(),
             ..plain()
         }
     }
+}
+
+/// Tells whether the data follows a smooth curve in its order.
+pub(crate) fn is_curve(data: &Dataset) -> bool {
+    curve::is_curve(data, extent(data).length())
+}
+
+/// Tells whether most atoms are those of which each residue has one.
+fn are_guides(data: &Dataset) -> bool {
+    let guides = matches("guide or (polymer and name BB)", data);
+    data.labels("name").is_none() || 2 * guides.iter().filter(|is| **is).count() >= data.spheres.len()
 }
 
 /// The sides of the box around all centres.
@@ -296,9 +325,18 @@ fn extent(data: &Dataset) -> DVec3 {
 /// The radius with which points without radii can be seen, where neighbours on a curve or in clusters are so close that
 /// spheres that touch would be specks; so small that all spheres side by side do not fill a picture.
 fn seen_radius(data: &Dataset, extent: DVec3) -> Option<f64> {
-    let (touching, _) = data.guessed_radius()?;
+    let (guessed, _) = data.guessed_radius()?;
+    // Places at random are nearer to each other in some places: smaller points show where they are many.
+    let spread = || Some(data.spacing_of(0.9)? / data.spacing_of(0.5)?);
+    let is_random = (FRAMED..=SEARCHED).contains(&data.spheres.len()) && spread().is_some_and(|spread| spread > 1.3);
+    let touching = if is_random { 0.6 * guessed } else { guessed };
     let seen = extent.length() * (0.35 / (data.spheres.len() as f64).sqrt()).min(SEEN);
-    (seen > touching).then_some(seen)
+    (is_random || seen > touching).then_some(seen.max(touching))
+}
+
+/// The distance to the nearest neighbour of nearly all points, which leaves few holes in surfaces of points in random places.
+fn scan_spacing(data: &Dataset) -> f64 {
+    data.spacing_of(0.9).unwrap_or_else(|| data.spacing())
 }
 
 /// The spheres that an expression selects; none if the data lacks what it needs.
@@ -310,7 +348,12 @@ fn matches(expression: &str, data: &Dataset) -> Vec<bool> {
 /// The view of data, without water, in which it is widest; near one from the front, right and above.
 fn widest_view(data: &Dataset, is_water: &[bool]) -> Option<[DVec3; 2]> {
     let seen = (0..data.spheres.len()).filter(|index| is_water.get(*index) != Some(&true));
-    axes::widest_view(seen.map(|index| data.center(index)), [DVec3::new(0.47, 0.34, 0.81), DVec3::Y])
+    let seen = seen.map(|index| data.center(index));
+    let view = axes::widest_view(seen.clone(), [DVec3::new(0.47, 0.34, 0.81), DVec3::Y])?;
+    Some(match seen.clone().count() <= CLEAR {
+        true => axes::clearest_view(&seen.collect::<Vec<_>>(), view, 0.7 * data.spacing()),
+        false => view,
+    })
 }
 
 /// The number of residues, up to three, of the spheres that are chosen.

@@ -7,7 +7,7 @@ use glam::DVec3;
 
 use crate::added::bonded_pairs;
 use crate::cell::PeriodicCell;
-use crate::load::Dataset;
+use crate::load::{ColumnValues, Dataset};
 
 /// How the spheres of a periodic cell are repeated.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -182,10 +182,26 @@ fn faces(data: &mut Dataset, cell: &PeriodicCell) -> Result<(), ReplicateError> 
     Ok(())
 }
 
+/// Moves spheres by the numbers of cells that the file gives for each.
+fn by_images(data: &mut Dataset, cell: &PeriodicCell) -> Result<(), ReplicateError> {
+    let columns = ["ix", "iy", "iz"].map(|name| match data.column(name) {
+        Some(ColumnValues::Numbers(numbers)) => Some(numbers.clone()),
+        _ => None,
+    });
+    let [Some(x), Some(y), Some(z)] = columns else {
+        return Err(ReplicateError(
+            "neither bonds nor columns ix, iy and iz say which spheres belong together; --bond-length LENGTH makes bonds",
+        ));
+    };
+    let turns = |index: usize| DVec3::new(x[index], y[index], z[index]);
+    let is_known = |index: usize| index < x.len() && turns(index).is_finite();
+    data.move_centers(|index, center| if is_known(index) { cell.moved(center, turns(index)) } else { center });
+    Ok(())
+}
+
 /// Moves spheres to their images beside others to which bonds join them.
 fn whole(data: &mut Dataset, cell: &PeriodicCell) -> Result<(), ReplicateError> {
-    let pairs =
-        bonded_pairs(data).map_err(|_| ReplicateError("nothing says which spheres are bonded; leave it out"))?;
+    let Ok(pairs) = bonded_pairs(data) else { return by_images(data, cell) };
     let mut links: Vec<[u32; 2]> = pairs.into_iter().flat_map(|[a, b]| [[a, b], [b, a]]).collect();
     links.sort_unstable();
     let mut centers: Vec<DVec3> = (0..data.spheres.len()).map(|index| data.center(index)).collect();

@@ -14,6 +14,8 @@ pub struct KindSettings {
     pub data: String,
     /// The style, with its background, if it is not the usual one of data.
     pub style: Option<Style>,
+    /// Changes of the style: keys of a scene file, for pictures whose style nobody changes otherwise.
+    pub look: String,
     /// The view.
     pub view: Option<KindView>,
     /// Notes for the user about what is not drawn.
@@ -45,6 +47,21 @@ const STRUCTURE: [&str; 7] = ["bonds", "elements", "leave_out", "opacity_by", "r
 
 /// A colour that stands out from pale backgrounds, and that colour maps do not have at their ends.
 const PLAIN: &str = "#4c86b8";
+
+/// The changes of a style. Colours that show numbers would be wrong if they faded.
+fn look(traits: &Traits, shows_numbers: bool) -> &'static str {
+    match traits.kind {
+        // Lines would be around holes.
+        Kind::Scan => "studio.outline.width = 0\nbackground = \"#f3f4f6\"\n",
+        // Windings that nearly touch would have lines between them.
+        Kind::Curve => "studio.outline.width = 0\n",
+        Kind::Molecules if !traits.has_cell => "",
+        Kind::Coarse | Kind::Polymer | Kind::Liquid | Kind::Particles | Kind::Molecules if !shows_numbers => {
+            "studio.depth_cue.strength = 0.2\n"
+        }
+        _ => "",
+    }
+}
 
 /// A length with five digits.
 fn written(length: f64) -> String {
@@ -88,7 +105,7 @@ impl KindSettings {
             let direction = direction.map(|direction| format!("direction = {:?}, ", direction.to_array()));
             format!("camera.{camera} = {{ {}up = {:?} }}\n", direction.unwrap_or_default(), up.to_array())
         });
-        self.data.clone() + &view.unwrap_or_default()
+        [self.data.as_str(), &self.look, &view.unwrap_or_default()].concat()
     }
 
     fn add(&mut self, text: &str) {
@@ -101,15 +118,20 @@ impl KindSettings {
         if traits.has_cell && !is_given("box") && ![Kind::Biomolecule, Kind::Slab].contains(&traits.kind) {
             self.add("box = true");
         }
-        if traits.has_cell && !is_given("replicate") {
-            match traits.kind {
-                Kind::Crystal => self.add("replicate = \"faces\""),
-                // A chain in pieces cannot be followed.
-                Kind::Polymer => self.add("replicate = \"whole\""),
-                _ => {}
-            }
+        // Without a scale, nobody sees how far points reach.
+        let has_box = traits.are_points && traits.flat.is_none() && traits.bulk.is_none();
+        if has_box && [Kind::Plain, Kind::Curve].contains(&traits.kind) && !traits.has_cell && !is_given("box") {
+            self.add("box = true");
+        }
+        if traits.has_cell && traits.kind == Kind::Crystal && !is_given("replicate") {
+            self.add("replicate = \"faces\"");
         }
         if STRUCTURE.iter().any(|key| is_given(key)) {
+            let has_sticks = matches!(traits.kind, Kind::Slab | Kind::Crystal | Kind::Molecules | Kind::Polymer);
+            // Other sizes and colours do not take away the sticks.
+            if has_sticks && !["bonds", "show"].iter().any(|key| is_given(key)) {
+                self.add("bonds = true");
+            }
             return;
         }
         match traits.kind {
@@ -117,15 +139,22 @@ impl KindSettings {
             Kind::Slab if traits.is_metal => {
                 let radius = written(0.5 * traits.spacing);
                 let touching = format!("{{ select = \"metal\", as = \"spacefill\", radius = {radius} }}");
-                self.add(&format!("show = [{{ as = \"balls\" }}, {touching}]"));
+                self.add(&format!("show = [{{ as = \"balls\", scale = 1.6 }}, {touching}]"));
             }
             // Beads nearly touch along a chain.
-            Kind::Polymer => self.add("show = [{ as = \"balls\", scale = 1.4 }]"),
+            Kind::Polymer => self.add("show = [{ as = \"balls\", scale = 1.5 }]"),
+            Kind::Molecules if traits.has_cell => self.add("show = [{ as = \"balls\", scale = 1.3 }]"),
             Kind::Slab | Kind::Crystal | Kind::Molecules => self.add("show = [{ as = \"balls\" }]"),
             Kind::Liquid => self.add("show = [{ as = \"spacefill\", scale = 0.7 }]"),
             // Points at random places leave few holes in surfaces.
-            Kind::Scan => self.add(&format!("radius = {}", written(1.4 * traits.spacing))),
+            Kind::Scan => self.add(&format!("radius = {}", written(2.0 * traits.spacing))),
             Kind::Plain if let Some(radius) = traits.seen_radius => self.add(&format!("radius = {}", written(radius))),
+            Kind::Curve => {
+                let radius = traits.seen_radius.map(written);
+                let [own, of_tube] = ["radius = ", ", radius = "]
+                    .map(|key| radius.as_ref().map_or_else(String::new, |radius| format!("{key}{radius}")));
+                self.add(&format!("{own}\nshow = [{{ as = \"trace\"{of_tube} }}]"));
+            }
             // Stars are points, as long as neighbours are pixels apart.
             Kind::Stars if !is_given("radius_scale") => self.add("radius_scale = 0.3"),
             Kind::Atoms => {
@@ -170,6 +199,9 @@ impl KindSettings {
                 _ => None,
             };
         }
+        if !["style", "integrator", "studio", "background"].iter().any(|key| is_given(key)) {
+            self.look = look(traits, is_given("color_by")).to_owned();
+        }
         let are_chains = matches!(traits.kind, Kind::Biomolecule | Kind::Coarse) && traits.has_chains;
         if are_chains && !is_colored(is_given) {
             self.add("color_by = \"chain\"");
@@ -178,13 +210,16 @@ impl KindSettings {
             self.add("color_by = \"species\"");
         }
         let is_plain = traits.kind == Kind::Plain && traits.is_uncolored;
+        if traits.kind == Kind::Curve && traits.is_uncolored && !is_colored(is_given) && !is_given("material") {
+            self.add("color_by = \"index\"");
+        }
         if is_plain && !is_colored(is_given) && !is_given("material") {
             self.add(&format!("color = \"{PLAIN}\""));
         }
     }
 
     fn focus(&mut self, traits: &Traits, is_given: &impl Fn(&str) -> bool) {
-        if traits.kind == Kind::Slab && !is_given("focus") {
+        if traits.kind == Kind::Slab && !is_given("focus") && !is_given("box") {
             // The empty layer may be wider than the slab.
             self.add("focus = \"all\"");
             return;
@@ -207,7 +242,7 @@ impl KindView {
         let has_view = VIEWS.iter().any(|key| is_given(key));
         let (usual, direction, up) = match (traits.kind, traits.widest_view) {
             _ if is_placed => return None,
-            (Kind::Plain, _) => match traits.flat.filter(|_| !has_view) {
+            (Kind::Plain | Kind::Curve, _) => match traits.flat.filter(|_| !has_view) {
                 None => ("pinhole", None, DVec3::Z),
                 // Straight on, with the first of its axes to the right.
                 Some(2) => ("pinhole", Some(DVec3::NEG_Z), DVec3::Y),
@@ -217,7 +252,7 @@ impl KindView {
             (Kind::Scan, _) if has_view => ("pinhole", None, traits.up),
             (Kind::Scan, _) => ("pinhole", Some(from(30.0, 35.0)[0]), traits.up),
             (Kind::Slab | Kind::Crystal, _) if has_view => ("orthographic", None, traits.up),
-            (Kind::Slab, _) => ("orthographic", Some(from(15.0, 10.0)[0]), traits.up),
+            (Kind::Slab, _) => ("orthographic", Some(from(15.0, 18.0)[0]), traits.up),
             (Kind::Crystal, _) => ("orthographic", Some(from(15.0, 10.0)[0]), traits.up),
             (Kind::Liquid | Kind::Atoms | Kind::Polymer | Kind::Particles, _) if traits.has_cell => {
                 ("pinhole", None, DVec3::Z)
@@ -256,6 +291,7 @@ mod tests {
             bulk: Some([DVec3::splat(-1.0), DVec3::splat(2.5)]),
             is_uncolored: true,
             seen_radius: Some(0.1),
+            are_points: true,
             flat: Some(1),
         }
     }
@@ -290,9 +326,9 @@ mod tests {
             KindSettings::new(&traits, None, |key| given.contains(&key)).text()
         };
         let up = "camera.pinhole = { up = [0.0, 0.0, 1.0] }\n";
-        assert_eq!(plain(None, &[]), format!("radius = 0.1\ncolor = \"{PLAIN}\"\n{up}"));
+        assert_eq!(plain(None, &[]), format!("box = true\nradius = 0.1\ncolor = \"{PLAIN}\"\n{up}"));
         assert_eq!(plain(Some(2), &["view", "radius", "color_by"]), up);
-        assert_eq!(plain(None, &["material", "radius_by", "up"]), "");
+        assert_eq!(plain(None, &["material", "radius_by", "up", "box"]), "");
         let across = ["0.0, 0.0, -1.0], up = [0.0, 1.0, 0.0", "0.0, 1.0, 0.0], up = [0.0, 0.0, 1.0"];
         for (axis, view) in [(2, across[0]), (1, across[1])] {
             assert!(plain(Some(axis), &[]).contains(view), "{axis}: {}", plain(Some(axis), &[]));
@@ -301,7 +337,7 @@ mod tests {
 
     #[test]
     fn what_is_given_stays() {
-        let all = ["box", "replicate", "bonds", "background", "color", "view", "up", "select", "focus"];
+        let all = ["box", "replicate", "bonds", "background", "studio", "color", "view", "up", "select", "focus"];
         for kind in Kind::ALL {
             assert_eq!(KindSettings::new(&traits(kind), None, |key| all.contains(&key)).text(), "", "{kind:?}");
         }
@@ -309,7 +345,7 @@ mod tests {
         let view = slab.view.unwrap();
         assert_eq!((view.camera.as_str(), view.up), ("pinhole", DVec3::new(0.0, 0.6, -0.8)));
         let above = -view.direction.unwrap().dot(view.up);
-        assert!((above - 10f64.to_radians().sin()).abs() < 1e-6, "{:?}", view.direction);
+        assert!((above - 18f64.to_radians().sin()).abs() < 1e-6, "{:?}", view.direction);
         let turned = KindSettings::new(&traits(Kind::Slab), None, |key| key == "view").view.unwrap();
         assert_eq!((turned.camera.as_str(), turned.direction), ("orthographic", None));
     }

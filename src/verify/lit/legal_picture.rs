@@ -6,7 +6,7 @@ use glam::DVec3;
 use crate::image::NO_ID;
 use crate::image::color::luminance;
 use crate::image::denoise::REACH;
-use crate::image::outline::{self, Outline};
+use crate::image::outline::{self, Outline, Step};
 use crate::parallel;
 use crate::recording::pixel_at;
 use crate::smooth::SmoothPicture;
@@ -47,7 +47,7 @@ impl LitCheck<'_> {
         let lines = settings.studio_parameters().and_then(|studio| studio.outline);
         let is_denoised = settings.sampling.denoise;
         // Light and hits are needed as far as they reach the pixels.
-        let of_lines = lines.map_or(0, |lines| outline::halo(lines.width) as u32 + 2);
+        let of_lines = lines.map_or(0, |lines| outline::reach(lines.width) as u32 + 2);
         let reach = if is_denoised { REACH.max(of_lines) } else { of_lines };
         let needed = near(size, indices.iter().copied(), reach);
         let needed = |pixel: [u32; 2]| needed[pixel[1] as usize * size[0] as usize + pixel[0] as usize];
@@ -204,10 +204,46 @@ fn strengths(a: Option<Spot>, b: Option<Spot>, outline: &Outline) -> Option<[f64
     }
 }
 
+/// Tells whether the first is nearer than the second, or is all that is hit; `None` if it is not known.
+fn is_nearer(a: Option<Spot>, b: Option<Spot>) -> Option<bool> {
+    let (a, b) = (a?, b?);
+    match (a.id == NO_ID, b.id == NO_ID) {
+        (true, _) => Some(false),
+        (_, true) => Some(true),
+        _ if a.depth.high < b.depth.low => Some(true),
+        _ if b.depth.high < a.depth.low => Some(false),
+        _ => None,
+    }
+}
+
 /// The least and the greatest fraction of each pixel that lines cover: 0 and 1 near an edge of which nothing is known.
 fn covered(size: [u32; 2], spots: &[Option<Spot>], outline: &Outline) -> Vec<[f64; 2]> {
     let [width, height] = size.map(|side| side as usize);
-    let of_edge = |a: usize, b: usize| strengths(spots[a], spots[b], outline);
+    let between = |a: usize, b: usize| strengths(spots[a], spots[b], outline);
+    let of_edge = |a: usize, b: usize| {
+        let full = between(a, b)?;
+        if full[1] <= 0.0 {
+            return Some(full);
+        }
+        // What is not known is taken for an end of the thing, and for what hides it.
+        let left = [Step::Off, Step::Behind].map(|unknown| {
+            let step = |from: usize, to: usize| match (between(from, to), is_nearer(spots[from], spots[to])) {
+                (Some([_, high]), _) if high <= 0.0 => Step::Within,
+                (Some(_), Some(true)) => Step::Off,
+                (Some(_), Some(false)) => Step::Behind,
+                _ => unknown,
+            };
+            let extent = |edge| outline::extent([width, height], edge, outline.width, step);
+            let extent = match (is_nearer(spots[a], spots[b]), unknown) {
+                (Some(true), _) => extent([a, b]),
+                (Some(false), _) => extent([b, a]),
+                (None, Step::Off) => extent([a, b]).min(extent([b, a])),
+                (None, _) => extent([a, b]).max(extent([b, a])),
+            };
+            f64::from(outline::left_along(extent, outline.width))
+        });
+        Some([full[0] * left[0] * (1.0 - 4.0 * U), full[1] * left[1] * (1.0 + 4.0 * U)])
+    };
     let share = |which: usize| {
         let outward = [down, up][which];
         outline::coverage_by([width, height], outline.width, |a, b| {

@@ -12,9 +12,9 @@ use crate::proof::certified::{self, FilePicture};
 use crate::proof::render_certified::witness;
 use crate::proof::verify::args::VerifyArgs;
 use crate::proof::verify::report::command_line;
-use crate::render::Job;
 use crate::render::device::Device;
 use crate::render::stop_rule::StopRule;
+use crate::render::{Job, ghosts};
 use crate::terminal::failure::Failure;
 use crate::terminal::progress::{self, answer};
 use crate::terminal::text::{self, in_quotes};
@@ -74,6 +74,7 @@ pub(crate) fn run(args: &VerifyArgs, path: &Path, scene: &Path) -> Result<(), Fa
     check_not_inputs(args.json.iter(), &files)?;
     let note = progress::notes(false);
     input.notes.iter().for_each(|text| note(text));
+    ghosts::refuse(&input, &path.display().to_string())?;
     certified::check_scene(&certificate, &input).with_context(of_picture)?;
     let (encoding, annotations) = job.finish(&mut input, note)?;
     let outputs = Outputs { annotations, ..job.outputs };

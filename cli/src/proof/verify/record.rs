@@ -14,10 +14,10 @@ use crate::proof::self_test;
 use crate::proof::verify::args::VerifyArgs;
 use crate::proof::verify::output::{VerifyJob, VerifyOutputs};
 use crate::proof::verify::report::{FinalPicture, JudgedLight, command_line};
-use crate::render;
 use crate::render::device::{AdapterReport, OpenDevice, WantedAdapter, explained_alone};
 use crate::render::views::views_of;
 use crate::render::with_scene::{upload, with_structures};
+use crate::render::{self, ghosts};
 use crate::terminal::failure::Failure;
 use crate::terminal::progress::{self, tell};
 use crate::terminal::{interrupt, memory, threads};
@@ -42,6 +42,7 @@ pub(crate) fn recorded(path: &Path, args: &VerifyArgs) -> Result<VerifyJob, Fail
     for note in &input.notes {
         tell(format_args!("note: {note}"));
     }
+    ghosts::note(&input, "not checked").iter().for_each(tell);
     if input.eyes.is_some() {
         tell("note: the camera has two eyes; only the view from the middle between them is checked");
     }

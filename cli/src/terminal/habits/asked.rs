@@ -59,8 +59,11 @@ impl Asked {
     }
 }
 
-/// The selection for `z=3:9`, of which either end may be left out.
+/// The selection for `z=3:9`, of which either end may be left out, or for a comparison.
 fn slice(text: &str) -> Result<String, Failure> {
+    if text.contains(['<', '>']) {
+        return Ok(text.to_owned());
+    }
     let parts = text.split_once('=').and_then(|(axis, ends)| Some((axis, ends.split_once(':')?)));
     match parts {
         Some((axis, (low, ""))) if !low.is_empty() => Ok(format!("{axis} >= {low}")),

@@ -3,10 +3,9 @@
 
 use std::collections::VecDeque;
 use std::ffi::{OsStr, OsString};
-use std::path::{Path, PathBuf};
+use std::path::Path;
 
 use clap::{Arg, Command, CommandFactory};
-use strsim::normalized_levenshtein;
 
 use self::asked::Asked;
 use self::hints::Hint;
@@ -14,40 +13,20 @@ use self::names::{SAME, SHORT, frames_of, same};
 use crate::command_line::Arguments;
 use crate::terminal::failure::Failure;
 use crate::terminal::text::in_quotes;
-use pinhole_data::css;
-use pinhole_data::load::{FileSet, Format};
 use pinhole_data::show::ShowStyle;
 use pinhole_figure::settings::flags::{Flag, Value};
 
 mod asked;
+mod files;
 mod hints;
 mod names;
+mod values;
 
 /// Flags with a selection, which has blanks.
 const SELECTIONS: [&str; 6] = ["select", "focus", "show", "hide", "ghost", "define"];
 
-/// Endings of pictures, which a shell puts among the files of a pattern.
-const PICTURES: [&str; 6] = ["apng", "exr", "gif", "json", "mp4", "png"];
-
 /// The width of outlines if nobody says it, in pixels.
 const LINES: &str = "1.5";
-
-/// Frequent colors, to tell a misspelt one from a column.
-const COLORS: [&str; 13] = [
-    "black",
-    "white",
-    "gray",
-    "grey",
-    "green",
-    "yellow",
-    "orange",
-    "purple",
-    "brown",
-    "tomato",
-    "steelblue",
-    "skyblue",
-    "lightgray",
-];
 
 /// The words that clap parses, for the words that a user typed. The first is the name of the program.
 ///
@@ -68,6 +47,12 @@ pub(crate) fn plain_words(words: Vec<OsString>) -> Result<Vec<OsString>, Failure
             is_first && rest.front().is_some_and(|word| is_for(render, word))
         });
         let Some(render) = render else {
+            if rest.front().is_some_and(|word| word == "help") {
+                return Err(Failure::usage(
+                    "help: `pinhole --help` lists the commands, and `pinhole render --help` all flags of pictures with their \
+                     values",
+                ));
+            }
             plain.extend(rest);
             return Ok(plain);
         };
@@ -84,7 +69,7 @@ fn is_for(command: &Command, word: &OsStr) -> bool {
         Some(flag) => {
             let name = flag.trim_start_matches('-').split('=').next().unwrap_or_default();
             let is_other = |(other, _): &(&str, &str)| *other == name;
-            name.starts_with("no-")
+            (text == "-" || name.starts_with("no-") || names::said(&text).is_some())
                 || command.get_arguments().any(|arg| arg.get_long() == Some(name) || is_short(arg, &text))
                 || SAME.iter().chain(SHORT).any(is_other)
                 || !matches!(hints::of(name, true), Hint::None)
@@ -95,6 +80,12 @@ fn is_for(command: &Command, word: &OsStr) -> bool {
 
 fn is_short(arg: &Arg, word: &str) -> bool {
     arg.get_short().is_some_and(|short| word.strip_prefix('-') == Some(short.encode_utf8(&mut [0; 4])))
+}
+
+/// A value may begin with a number, but not with a letter after the hyphen.
+fn is_flag(word: &OsStr) -> bool {
+    let bytes = word.as_encoded_bytes();
+    bytes.starts_with(b"--") || bytes.first() == Some(&b'-') && bytes.get(1).is_some_and(u8::is_ascii_alphabetic)
 }
 
 /// Reads words one by one.
@@ -121,10 +112,15 @@ impl Reader<'_> {
             match word.to_str() {
                 Some(text) if text.len() > 2 && text.starts_with("--") => self.flag(&text[2..])?,
                 Some("-s") if self.find("size").is_some() => self.flag("size")?,
+                Some(text) if names::said(text).is_some() && self.is_unknown(text) => {
+                    let words = names::said(text).unwrap_or_default();
+                    return Err(Failure::usage(format!("{text}: {words}")));
+                }
                 _ => self.other(word),
             }
         }
         self.give_back_file();
+        self.order_rules();
         self.name_topology();
         self.join_files();
         self.refuse_more_files()?;
@@ -156,13 +152,26 @@ impl Reader<'_> {
         }
     }
 
+    fn is_unknown(&self, short: &str) -> bool {
+        self.find("show").is_some() && !self.command.get_arguments().any(|arg| is_short(arg, short))
+    }
+
     fn find(&self, name: &str) -> Option<&Arg> {
         self.command.get_arguments().find(|arg| arg.get_long() == Some(name))
     }
 
     fn flag(&mut self, text: &str) -> Result<(), Failure> {
         let (name, value) = text.split_once('=').map_or((text, None), |(name, value)| (name, Some(value)));
-        let name = if self.find(name).is_some() { name } else { same(name) };
+        let written = name.replace('_', "-");
+        let is_bare = value.is_none() && self.rest.front().is_none_or(|word| word.as_encoded_bytes().starts_with(b"-"));
+        if is_bare && ["center", "centre"].contains(&name) {
+            let words = "pictures are centered on what they show; leave it out";
+            return Err(Failure::usage(format!("--{name}: {words}")));
+        }
+        if self.find(name).is_none() && self.of_value(&written, value)? {
+            return Ok(());
+        }
+        let name = if self.find(name).is_some() { name } else { same(&written) };
         if self.find(name).is_some() {
             return self.own(name, value);
         }
@@ -170,13 +179,25 @@ impl Reader<'_> {
             (matches!(flag.value, Value::Switch) || flag.name() == "box") && self.find(flag.name()).is_some()
         };
         let switched = name.strip_prefix("no-").map(same);
+        // These are drawn only if they are asked for.
+        if switched.is_some_and(|name| ["axes", "arrows", "label", "legend", "scale-bar"].contains(&name)) {
+            return Ok(());
+        }
         if let Some(flag) = switched.and_then(Flag::of_name).filter(|flag| is_switch(flag)) {
             self.give(flag.name(), "false");
             return Ok(());
         }
         let Some((_, of)) = SHORT.iter().find(|(short, of)| *short == name && self.find(of).is_some()) else {
             return match hints::of(name, self.find("show").is_some()) {
-                Hint::Flag(flag, value) => {
+                Hint::Flag(flag, mut value) => {
+                    // A style may have its selection.
+                    let is_selection = |word: &&OsString| {
+                        !is_flag(word) && word.as_encoded_bytes().contains(&b' ') && !Path::new(word).is_file()
+                    };
+                    if flag == "show" && self.rest.front().filter(is_selection).is_some() {
+                        let selection = self.rest.pop_front().unwrap_or_default();
+                        value = format!("{} = {value}", selection.to_string_lossy());
+                    }
                     self.give(flag, &value);
                     Ok(())
                 }
@@ -187,7 +208,9 @@ impl Reader<'_> {
                 }
             };
         };
-        let value = value.map(str::to_owned).or_else(|| self.rest.pop_front()?.into_string().ok());
+        let follows = self.rest.front().is_some_and(|word| !is_flag(word));
+        let next = if value.is_none() && follows { self.rest.pop_front() } else { None };
+        let value = value.map(str::to_owned).or(next.and_then(|word| word.into_string().ok()));
         let value = value.ok_or_else(|| Failure::usage(format!("--{name} needs a value")))?;
         match name {
             "title" => self.give(of, &format!("{value}@top")),
@@ -201,14 +224,46 @@ impl Reader<'_> {
         Ok(())
     }
 
+    /// Takes a flag of another program whose value has another meaning here. Returns false if it is none.
+    fn of_value(&mut self, name: &str, value: Option<&str>) -> Result<bool, Failure> {
+        let next = value.or_else(|| self.rest.front().and_then(|word| word.to_str()));
+        let Some(text) = next.map(str::to_owned) else { return Ok(false) };
+        let Some(found) = values::replaced(name, &text)? else { return Ok(false) };
+        if value.is_none() {
+            self.rest.pop_front();
+        }
+        self.plain.push(found.into());
+        Ok(true)
+    }
+
+    /// Puts styles for all before rules for a part, which they would cancel.
+    fn order_rules(&mut self) {
+        let is_rule = |word: &OsString| {
+            let text = word.to_string_lossy();
+            ["--show=", "--hide=", "--ghost="].iter().any(|start| text.starts_with(start))
+        };
+        let is_for_all = |word: &OsString| {
+            let text = word.to_string_lossy();
+            let style = text.strip_prefix("--show=").and_then(|rule| rule.split(',').next());
+            style.is_some_and(|style| ShowStyle::of_name(style.trim()).is_some())
+        };
+        let places: Vec<usize> = (0..self.plain.len()).filter(|place| is_rule(&self.plain[*place])).collect();
+        let mut rules: Vec<OsString> = places.iter().map(|place| self.plain[*place].clone()).collect();
+        rules.sort_by_key(|rule| !is_for_all(rule));
+        for (place, rule) in places.into_iter().zip(rules) {
+            self.plain[place] = rule;
+        }
+    }
+
     /// Takes a flag of the command, with its value.
     fn own(&mut self, name: &str, value: Option<&str>) -> Result<(), Failure> {
         let may_be_value = |word: &OsStr, arg: &Arg| {
             let begins = |with: &[u8]| word.as_encoded_bytes().starts_with(with);
             let has_hyphen = begins(b"-") && word != "-";
+            let is_flag = SELECTIONS.contains(&name) && is_flag(word);
             match arg.is_require_equals_set() {
                 true => !has_hyphen && !Path::new(word).is_file(),
-                false => !has_hyphen || arg.is_allow_hyphen_values_set() && !begins(b"--"),
+                false => !has_hyphen || arg.is_allow_hyphen_values_set() && !begins(b"--") && !is_flag,
             }
         };
         let arg = self.find(name).filter(|arg| arg.get_action().takes_values());
@@ -239,30 +294,16 @@ impl Reader<'_> {
         if SELECTIONS.contains(&name) {
             self.check_quotes(name, &text)?;
         }
-        if ["color", "radius"].contains(&name) && text.contains('=') {
-            return Err(Failure::usage(format!(
-                "--{name} {text}: this is one {name} for all; for each kind: --set 'elements.NAME.{name}=VALUE'"
-            )));
-        }
         if is_doubtful {
             self.doubtful.push(self.plain.len());
         }
-        // A name that is not a color is a column, unless it is nearly one.
-        let is_color =
-            || css::color(&text).is_ok() || COLORS.iter().any(|color| normalized_levenshtein(color, &text) > 0.7);
-        let is_of_show = ShowStyle::of_name(&text).is_some() || text.eq_ignore_ascii_case("cpk");
-        let is_column = name == "color" && self.find("color-by").is_some() && !is_color();
-        let name = match name {
-            "color" if is_column => "color-by",
-            // A style of other programs is one of what is drawn.
-            "style" if is_of_show && self.find("show").is_some() => "show",
-            // The camera of some programs is called a view.
-            "view" if text == "perspective" => {
-                self.give("camera", "pinhole");
-                return Ok(());
-            }
-            name => name,
-        };
+        let (name, text) = values::meant(name, &text, |name| self.find(name).is_some())?;
+        if name == "select" && self.plain.iter().any(|word| word.to_string_lossy().starts_with("--select=")) {
+            return Err(Failure::usage(
+                "--select twice: join them with `or`; --show 'protein = trace' --show 'resname HEM = sticks' draws parts \
+                 otherwise",
+            ));
+        }
         // What is off is as if it were not asked for, but for a cell, which kinds of data may draw.
         if is_doubtful && ["off", "none", "no"].contains(&text.as_str()) {
             if name == "box" {
@@ -317,95 +358,6 @@ impl Reader<'_> {
         let Some(word) = bare.first().filter(|_| is_file_elsewhere || bare.len() > 1) else { return Ok(()) };
         let whole = in_quotes(&format!("{first} {}", bare.join(" ")));
         Err(Failure::usage(format!("`{word}` is no file; quote it: --{name} {whole}")))
-    }
-
-    /// If no other word is the file, turns the value of a flag that needs none into it.
-    fn give_back_file(&mut self) {
-        if !self.files.is_empty() || self.command.get_positionals().next().is_none() {
-            return;
-        }
-        let parts = |place: &usize| {
-            let text = self.plain.get(*place)?.to_str()?;
-            let (flag, value) = text.split_once('=')?;
-            Some((*place, flag.to_owned(), value.to_owned()))
-        };
-        let all: Vec<_> = self.doubtful.iter().filter_map(parts).collect();
-        let fits = |name: &str, value: &str| {
-            Flag::of_name(name.trim_start_matches('-')).is_some_and(|flag| flag.layer(value, "pinhole").is_ok())
-        };
-        let unfit = all.iter().rev().find(|(_, flag, value)| !fits(flag, value));
-        if let Some((place, flag, value)) = unfit.or(all.last()) {
-            self.plain[*place] = flag.into();
-            self.plain.insert(*place + 1, value.into());
-        }
-    }
-
-    /// Takes the one other file beside trajectories of positions alone as their topology.
-    fn name_topology(&mut self) {
-        let has_topology = |word: &OsString| word.to_str().is_some_and(|word| word.starts_with("--topology"));
-        if self.find("topology").is_none() || self.plain.iter().any(has_topology) {
-            return;
-        }
-        let needs_it = |place: usize| {
-            let format = self.plain.get(place).and_then(|word| Format::of_path(Path::new(word)).ok()?);
-            format.is_some_and(|format| format.needs_topology)
-        };
-        let (trajectories, others): (Vec<usize>, Vec<usize>) = self.files.iter().partition(|place| needs_it(**place));
-        let &[place] = &others[..] else { return };
-        if trajectories.is_empty() {
-            return;
-        }
-        if let Some(word) = self.plain.get_mut(place).filter(|word| word.to_str().is_some()) {
-            *word = format!("--topology={}", word.to_string_lossy()).into();
-        }
-    }
-
-    /// Takes several files whose names differ in a number as the frames of a trajectory, and others together.
-    fn join_files(&mut self) {
-        if self.command.get_positionals().count() != 1 {
-            return;
-        }
-        let is_file = |place: &&usize| self.plain.get(**place).is_some_and(|word| Path::new(word).is_file());
-        let files: Vec<usize> = self.files.iter().filter(is_file).copied().collect();
-        let paths: Vec<PathBuf> = files.iter().filter_map(|place| self.plain.get(*place).map(PathBuf::from)).collect();
-        let are_data = paths.iter().all(|path| matches!(Format::of_path(path), Ok(Some(_))));
-        let name = FileSet::name_of(&paths).or_else(|| FileSet::name_together(&paths).filter(|_| are_data));
-        let (Some(name), Some((first, others))) = (name, files.split_first()) else { return };
-        self.plain[*first] = name.into();
-        for place in others.iter().rev() {
-            self.plain.remove(*place);
-        }
-        // Words after `--` are not among the plain ones yet, so places are not needed any more but that of the set.
-        self.files = vec![*first];
-    }
-
-    /// Refuses a second file, which clap would call an unexpected argument.
-    fn refuse_more_files(&self) -> Result<(), Failure> {
-        let most = self.command.get_positionals().count();
-        let files = self.files.iter().filter_map(|place| self.plain.get(*place));
-        let is_topology = |word: &&OsString| word.to_string_lossy().starts_with("--topology");
-        let files: Vec<&OsString> = files.filter(|word| !is_topology(word)).collect();
-        let paths = files.iter().map(PathBuf::from);
-        let ending = |path: &PathBuf| path.extension().and_then(OsStr::to_str).map(str::to_ascii_lowercase);
-        let is_picture = |path: &PathBuf| ending(path).is_some_and(|ending| PICTURES.contains(&ending.as_str()));
-        let (pictures, others): (Vec<_>, Vec<_>) = paths.partition(is_picture);
-        if let (Some(picture), Some(name)) = (pictures.first(), FileSet::name_of(&others)) {
-            return Err(Failure::usage(format!(
-                "{}: this is a picture, not a frame; quote the name of all frames: {}",
-                picture.display(),
-                in_quotes(&name.to_string_lossy())
-            )));
-        }
-        match files.get(most) {
-            Some(word) if most == 1 && Path::new(*word).is_file() => Err(Failure::usage(format!(
-                "{}: only files of data, without commas and braces in their names, are seen together; render each file",
-                word.to_string_lossy()
-            ))),
-            Some(word) if most == 1 && matches!(Format::of_path(Path::new(word)), Ok(Some(_))) => {
-                Err(Failure::usage(format!("{}: there is no such file", word.to_string_lossy())))
-            }
-            _ => Ok(()),
-        }
     }
 
     /// The value of a flag that was given before, which is taken away.

@@ -17,7 +17,7 @@ pub(crate) use bonds::{bonded_pairs, radius_factor};
 pub(crate) use neighbours::contacts;
 pub use shapes::{AddError, AddedShapes, ArrowKey};
 
-use glam::DVec3;
+use glam::{DMat3, DVec3};
 
 use crate::load::{Column, Dataset, covalent, labels_in};
 use pinhole::scene::Appearance;
@@ -108,7 +108,7 @@ pub(crate) fn element_test(columns: &[Column]) -> impl Fn(usize) -> bool {
     move |row| indices.get(row).and_then(|index| are_elements.get(*index as usize)).copied().unwrap_or_default()
 }
 
-/// The twelve edges of the periodic cell, drawn as cylinders.
+/// The twelve edges of the periodic cell, or of the box around all spheres without one, drawn as cylinders.
 #[derive(Clone, Debug, Default, PartialEq)]
 #[non_exhaustive]
 pub struct CellEdges {
@@ -122,6 +122,17 @@ const WIDTH: f64 = 1.0 / 300.0;
 /// The least width of edges, as a share of the diagonal: cylinders must not be thinner for their length.
 const LEAST_WIDTH: f64 = 1.0 / 4000.0;
 
+/// The edges and the first corner of the box around all spheres, for data without a cell.
+fn box_around(data: &Dataset) -> ([[f64; 3]; 3], DVec3) {
+    let ends = |index: usize| (data.center(index), DVec3::splat(data.spheres.at(index)[3]));
+    let finite = (0..data.spheres.len()).map(ends).filter(|(center, radius)| (center + radius).is_finite());
+    let (low, high) = finite.fold((DVec3::INFINITY, DVec3::NEG_INFINITY), |(low, high), (center, radius)| {
+        (low.min(center - radius), high.max(center + radius))
+    });
+    let sides = high - low;
+    (DMat3::from_diagonal(sides).to_cols_array_2d(), low)
+}
+
 impl CellEdges {
     /// Edges of this width.
     #[must_use]
@@ -130,19 +141,16 @@ impl CellEdges {
     }
 
     fn add(&self, data: &Dataset, added: &mut AddedShapes) -> Result<(), AddError> {
-        let edges = data.cell.ok_or_else(|| {
-            AddError(
-                "the data has no periodic cell, so there is no box to draw; leave out `--box`, or the key `box`"
-                    .to_owned(),
-            )
-        })?;
-        let origin = DVec3::from(data.cell_origin);
+        let (edges, origin) = match data.cell {
+            Some(edges) => (edges, DVec3::from(data.cell_origin)),
+            None => box_around(data),
+        };
         let [a, b, c] = edges.map(DVec3::from);
         let diagonals = [a + b + c, a + b - c, a - b + c, b + c - a];
         let diagonal = diagonals.into_iter().map(DVec3::length).fold(0.0, f64::max);
         if !(diagonal.is_finite() && diagonal > 0.0 && origin.is_finite()) {
             return Err(AddError(format!(
-                "the periodic cell has the edges {edges:?} and cannot be drawn as a box; leave out `--box`, or the key \
+                "the cell, or the box around all, has the edges {edges:?} and cannot be drawn as a box; leave out `--box`, or the key \
                  `box`"
             )));
         }

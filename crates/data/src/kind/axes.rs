@@ -1,6 +1,6 @@
 //! The principal axes of points: the directions in which they spread most and least.
 
-use glam::{DMat3, DVec3};
+use glam::{DMat3, DQuat, DVec2, DVec3};
 
 /// Directions in which points spread differ if the mean squares of their distances have less than this ratio.
 const DIFFERENT: f64 = 0.8;
@@ -31,6 +31,31 @@ pub(super) fn widest_view(points: impl Iterator<Item = DVec3> + Clone, near: [DV
     // A rod is seen from its side.
     let side = (near[0] - longest * near[0].dot(longest)).try_normalize()?;
     (middle < DIFFERENT * most).then(|| [side, towards(longest.cross(side), near[1])])
+}
+
+/// The view near another one, by up to 40 degrees along each side, in which points hide each other least: those that are
+/// nearer to each other than `reach` in the picture. Smaller turns are better.
+pub(super) fn clearest_view(points: &[DVec3], [eye, up]: [DVec3; 2], reach: f64) -> [DVec3; 2] {
+    let right = up.cross(eye);
+    let hidden = |[eye, up]: [DVec3; 2]| -> f64 {
+        let right = up.cross(eye);
+        let places: Vec<DVec2> =
+            points.iter().map(|point| DVec2::new(point.dot(right), point.dot(up)) / reach).collect();
+        let pairs =
+            places.iter().enumerate().flat_map(|(at, a)| places[..at].iter().map(move |b| a.distance_squared(*b)));
+        pairs.map(|squared| (1.0 - squared).max(0.0)).sum()
+    };
+    let steps = || (-4..=4).map(|step| 10.0 * f64::from(step));
+    let turned = |across: f64, upward: f64| {
+        let turn = DQuat::from_axis_angle(right, upward.to_radians()) * DQuat::from_axis_angle(up, across.to_radians());
+        [turn * eye, turn * up]
+    };
+    let views = steps().flat_map(|across| steps().map(move |upward| (across, upward)));
+    let rated = views.map(|(across, upward)| {
+        let view = turned(across, upward);
+        (hidden(view) + 1e-4 * (across * across + upward * upward), view)
+    });
+    rated.min_by(|a, b| a.0.total_cmp(&b.0)).map_or([eye, up], |(_, view)| view)
 }
 
 /// The eigenvalues of a symmetric matrix, the smallest first, with vectors of length 1, by the rotations of Jacobi (Golub
@@ -87,6 +112,18 @@ mod tests {
         let [eye, up] = view(&[[0.0, 0.0, 0.0], [1.0, 1.0, 1.0], [2.0, 2.0, 2.0]]).unwrap();
         let along = DVec3::ONE;
         assert!(eye.dot(along).abs() < 1e-9 && up.dot(along).abs() < 1e-9 && eye.dot(up).abs() < 1e-9, "{eye} {up}");
+    }
+
+    #[test]
+    fn few_points_do_not_hide_each_other() {
+        // From the front, the first two are in one place.
+        let points = [[0.0, 0.0, 1.0], [0.0, 0.0, -1.0], [2.0, 0.0, 0.0], [-2.0, 0.0, 0.0]].map(DVec3::from);
+        let front = [DVec3::Z, DVec3::Y];
+        let [eye, up] = clearest_view(&points, front, 0.9);
+        let place = |point: DVec3| point - eye * point.dot(eye);
+        assert!((place(points[0]) - place(points[1])).length() > 0.6, "{eye}");
+        assert!((eye.length() - 1.0).abs() < 1e-9 && eye.dot(up).abs() < 1e-9 && eye.dot(DVec3::Z) > 0.5, "{eye} {up}");
+        assert_eq!(clearest_view(&points[2..], front, 0.9), front);
     }
 
     #[test]

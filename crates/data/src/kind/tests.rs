@@ -117,10 +117,20 @@ fn points_that_would_be_specks_are_larger_and_planes_are_known() {
         traits("a.csv", &format!("x,y,z\n{rows}"))
     };
     // Points on a curve are much closer to each other than to the ends of the box.
-    let curve = table(&mut (0..2000).map(|i| f64::from(i) * 0.01).map(|t| [t, t.sin(), t.cos()]));
-    let seen = curve.seen_radius.unwrap();
-    assert!((0.05..0.1).contains(&seen), "{seen}");
-    assert_eq!((curve.kind, curve.is_uncolored, curve.flat), (Kind::Plain, true, None));
+    let along = |i: i32| [f64::from(i) * 0.01, (f64::from(i) * 0.01).sin(), (f64::from(i) * 0.01).cos()];
+    for (step, kind, radius) in [(7919, Kind::Plain, 0.05..0.1), (1, Kind::Curve, 0.2..0.3)] {
+        let curve = table(&mut (0..2000).map(|i| along(i * step % 2000)));
+        assert!(radius.contains(&curve.seen_radius.unwrap()), "{curve:?}");
+        assert_eq!((curve.kind, curve.is_uncolored, curve.flat), (kind, true, None));
+    }
+    // A jump, points in no order, and turns to all sides make no curve.
+    let circle = |i: u32| [f64::from(i % 10).sin() * 9.0, f64::from(i).sin(), f64::from(i).cos()];
+    let path = |i: u32| [f64::from(i / 2), f64::from(i % 2), f64::from(i / 7 % 2)];
+    for rows in [circle, path] {
+        assert_eq!(table(&mut (0..100).map(rows)).kind, Kind::Plain);
+    }
+    let jump = |i: u32| [f64::from(i) + if i > 50 { 20.0 } else { 0.0 }, f64::from(i).mul_add(0.1, 1.0), 0.0];
+    assert_eq!([100, 50].map(|count| table(&mut (0..count).map(jump)).kind), [Kind::Plain, Kind::Curve]);
     let lattice = table(&mut (0..1000).map(|i| [i / 100, i / 10 % 10, i % 10].map(f64::from)));
     assert_eq!(lattice.seen_radius, None);
     for axis in 0..3 {

@@ -152,6 +152,11 @@ impl Dataset {
         2.0 * spacing::radius(count, |index| self.center(index)).unwrap_or_else(largest)
     }
 
+    /// The distance to the nearest neighbour that this part of the spheres has at most.
+    pub(crate) fn spacing_of(&self, part: f64) -> Option<f64> {
+        spacing::distance(self.spheres.len(), |index| self.center(index), part)
+    }
+
     /// The centre of a sphere.
     pub(crate) fn center(&self, index: usize) -> DVec3 {
         center(&self.spheres, index)

@@ -17,10 +17,16 @@ const MOST_TESTS: usize = 1 << 25;
 const ATTEMPTS: usize = 40;
 
 /// Half of the median distance from a sphere to its nearest neighbour, so that neighbours about touch; `None` if all
-/// centres are in one place. Only a sample, spread over the file, is used if there are many spheres.
+/// centres are in one place.
+pub(super) fn radius(count: usize, center: impl Fn(usize) -> DVec3) -> Option<f64> {
+    distance(count, center, 0.5).map(|median| 0.5 * median)
+}
+
+/// The distance from a sphere to its nearest neighbour that this part of the spheres has at most; `None` if all centres are
+/// in one place. Only a sample, spread over the file, is used if there are many spheres.
 ///
 /// `center` returns the centre of a sphere, by its index below `count`; centres that are not finite are left out.
-pub(super) fn radius(count: usize, center: impl Fn(usize) -> DVec3) -> Option<f64> {
+pub(super) fn distance(count: usize, center: impl Fn(usize) -> DVec3, part: f64) -> Option<f64> {
     let finite = || (0..count).map(&center).filter(|center| center.is_finite());
     let (low, high) = finite()
         .fold((DVec3::INFINITY, DVec3::NEG_INFINITY), |(low, high), center| (low.min(center), high.max(center)));
@@ -42,13 +48,13 @@ pub(super) fn radius(count: usize, center: impl Fn(usize) -> DVec3) -> Option<f6
                 cell /= 4.0;
                 most_tests *= 2;
             }
-            // A neighbour closer than the side of a cell is sure to be the nearest. If half of the neighbours are,
-            // so is the median.
+            // A neighbour closer than the side of a cell is sure to be the nearest. If this part of the neighbours are,
+            // so is the one that is returned.
             Some(mut squared) => {
                 squared.sort_unstable_by(f64::total_cmp);
-                let median = squared[(asked.len() - 1) / 2].sqrt();
-                if median <= cell {
-                    return Some(0.5 * median);
+                let found = squared[((asked.len() - 1) as f64 * part) as usize].sqrt();
+                if found <= cell {
+                    return Some(found);
                 }
                 cell *= 2.0;
             }
@@ -127,6 +133,14 @@ mod tests {
         let mut odd = lattice(10, 2.0);
         odd.extend([DVec3::splat(1e6), DVec3::NAN]);
         near(radius_of(&odd), 1.0);
+    }
+
+    #[test]
+    fn parts_of_the_spheres_have_their_own_distances() {
+        let place = |i: i32| if i < 75 { 0.1 * f64::from(i) } else { 10.0 + f64::from(i - 75) };
+        let row: Vec<_> = (0..100).map(|i| DVec3::new(place(i), 0.0, 0.0)).collect();
+        let found = [0.5, 0.9].map(|part| distance(row.len(), |index| row[index], part).unwrap());
+        assert!((found[0] - 0.1).abs() < 1e-9 && (found[1] - 1.0).abs() < 1e-9, "{found:?}");
     }
 
     #[test]

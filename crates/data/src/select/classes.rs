@@ -54,7 +54,10 @@ impl<'a> Data<'a> {
                 Ok(protein.into_iter().zip(names).map(|(is, not)| is && !not).collect())
             }
             "helix" | "sheet" | "coil" => {
-                let problem = format!("{} cannot be selected: records of HELIX and SHEET are not read", word.text);
+                let problem = format!(
+                    "{} cannot be selected: records of HELIX and SHEET are not read; give residues, such as resid 4 to 18",
+                    word.text
+                );
                 Err(self.error(at, problem))
             }
             other => match names_of_class(other) {

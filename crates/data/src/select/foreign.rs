@@ -12,6 +12,9 @@ pub(super) fn remedy(text: &str) -> Option<String> {
         let name = crate::keys::key_of(name).map_or(name, |key| key.name);
         return Some(format!("this is ChimeraX's; write: {name} {sign} {value}"));
     }
+    if let Some(terms) = macro_terms(text) {
+        return Some(format!("this is PyMOL's; write: {terms}"));
+    }
     let is_chimera = text.starts_with(['/', '#', '@'])
         || text.strip_prefix(':').is_some_and(|rest| rest.starts_with(|c: char| c.is_ascii_digit()));
     let is_ngl = text.starts_with([':', '.']) && !is_chimera;
@@ -24,6 +27,19 @@ pub(super) fn remedy(text: &str) -> Option<String> {
     }
     let whose = if is_ngl { "NGL's" } else { "ChimeraX's" };
     (is_chimera || is_ngl).then(|| format!("this is {whose}; write: {}", words.join(" ")))
+}
+
+/// The terms of a macro such as `/4hhb//A/1-20/CA`: an object, a segment, a chain, residues and names.
+fn macro_terms(text: &str) -> Option<String> {
+    let parts: Vec<&str> = text.strip_prefix('/')?.split('/').collect();
+    let is_macro = (3..=5).contains(&parts.len()) && !text.contains([' ', ':', '@']);
+    let keys = [None, Some("segid"), Some("chain"), Some("resid"), Some("name")];
+    let term = |(key, value): (Option<&str>, &&str)| {
+        let value = value.split('`').next().filter(|value| !["", "*"].contains(value))?;
+        Some(format!("{} {}", key?, value.replace('+', " ").replace('-', " to ")))
+    };
+    let terms: Vec<String> = keys.into_iter().zip(&parts).filter_map(term).collect();
+    (is_macro && !terms.is_empty()).then(|| terms.join(" and "))
 }
 
 /// The terms of a word such as `/A:12-20@CA`.

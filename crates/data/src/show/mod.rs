@@ -10,11 +10,8 @@ mod trace;
 
 pub use rule::{ShowRule, ShowStyle, ShownPart};
 
-use std::f64::consts::PI;
-
-use glam::DVec3;
-
 use crate::added::{DrawnSpheres, StickSize, element_test};
+use crate::kind::is_curve;
 use crate::load::Dataset;
 use crate::select::{KeptSpheres, SelectError};
 use sizes::Measures;
@@ -74,10 +71,15 @@ impl<'a> Shown<'a> {
         let before = if is_partial { Drawn::Not } else { Drawn::Plain };
         let mut shown =
             Self { rules, drawn: vec![before; count], traces: vec![None; count], ghosts: vec![false; count], notes };
+        let has_bonds = !data.bonds.is_empty() || data.labels("species").is_some();
+        let has_lines = rules.iter().any(|rule| rule.style == ShowStyle::Lines);
+        let is_along = has_lines && !has_bonds && is_curve(data);
         for ((rule, part), number) in rules.iter().zip(&parts).zip(0..) {
             let part = part.as_ref().unwrap_or(&rest);
+            // Lines join the points of a curve in their order.
+            let style = if is_along && rule.style == ShowStyle::Lines { ShowStyle::Trace } else { rule.style };
             for index in (0..count).filter(|index| part[*index]) {
-                shown.apply(rule.style, number, index);
+                shown.apply(style, number, index);
             }
         }
         let left_out = rest.iter().filter(|is_left| **is_left).count();
@@ -87,7 +89,7 @@ impl<'a> Shown<'a> {
                  faintly"
             ));
         }
-        if count > 0 && !(0..count).any(|index| shown.is_drawn(index) || shown.traces[index].is_some()) {
+        if count > 0 && !(0..count).any(|index| shown.is_seen(index)) {
             shown.notes.push("`show` hides all spheres".to_owned());
         }
         Ok(shown)
@@ -120,7 +122,7 @@ impl<'a> Shown<'a> {
     #[must_use]
     pub fn kept(&self, selected: Option<KeptSpheres>) -> KeptSpheres {
         let count = self.drawn.len();
-        let kept = (0..count).filter(|index| self.is_drawn(*index) || self.traces[*index].is_some()).count();
+        let kept = (0..count).filter(|index| self.is_seen(*index)).count();
         let selected = selected.unwrap_or(KeptSpheres { kept: count, of: count, notes: Vec::new() });
         KeptSpheres { kept, ..selected }
     }
@@ -131,29 +133,19 @@ impl<'a> Shown<'a> {
         self.drawn[index] == Drawn::Plain
     }
 
-    /// Returns true if a sphere is a ghost, or the part of a tube there.
+    /// Returns true if a sphere, or a tube there, is drawn.
     #[must_use]
-    pub fn is_ghost(&self, index: usize) -> bool {
-        self.ghosts[index]
+    pub fn is_seen(&self, index: usize) -> bool {
+        self.is_drawn(index) || self.traces[index].is_some()
     }
 
-    /// The opacity of a surface of ghosts in the place of an opaque one. About half of the light comes through all of them:
-    /// a ray meets as many surfaces as the areas of all spheres go into that of their box, as Cauchy's formula says.
+    /// The same without ghosts, or only the ghosts.
     #[must_use]
-    pub fn ghost_opacity(&self, data: &Dataset) -> f32 {
-        /// The share of light that comes through.
-        const CLEAR: f64 = 0.5;
-        let ghosts = (0..self.drawn.len()).filter(|index| self.ghosts[*index] && self.is_drawn(*index));
-        let (mut area, mut low, mut high) = (0.0, DVec3::INFINITY, DVec3::NEG_INFINITY);
-        for [x, y, z, radius] in ghosts.map(|index| data.spheres.at(index)) {
-            area += 4.0 * PI * radius * radius;
-            (low, high) = (low.min(DVec3::new(x, y, z) - radius), high.max(DVec3::new(x, y, z) + radius));
+    pub fn only(mut self, ghosts: bool) -> Self {
+        for index in (0..self.drawn.len()).filter(|index| self.ghosts[*index] != ghosts) {
+            (self.drawn[index], self.traces[index]) = (Drawn::Not, None);
         }
-        let DVec3 { x, y, z } = high - low;
-        let layers = 2.0 * area / (2.0 * (x * y + y * z + z * x));
-        // Few surfaces are fainter still.
-        let opacity = 1.0 - CLEAR.powf(1.0 / layers.max(1.0));
-        if opacity.is_finite() { opacity.clamp(0.01, 0.25) as f32 } else { 0.25 }
+        self
     }
 
     /// The number of the rule for a sphere; `None` if it is drawn as without rules, or not at all.
@@ -169,7 +161,8 @@ impl<'a> Shown<'a> {
     pub(crate) fn traces(&self) -> impl Iterator<Item = (usize, &ShowRule, Vec<usize>)> {
         let spheres =
             move |number: u32| (0..self.traces.len()).filter(move |index| self.traces[*index] == Some(number));
-        let traces = self.rules.iter().enumerate().filter(|(_, rule)| rule.style == ShowStyle::Trace);
+        let may_be_tube = |rule: &ShowRule| matches!(rule.style, ShowStyle::Trace | ShowStyle::Lines);
+        let traces = self.rules.iter().enumerate().filter(move |(_, rule)| may_be_tube(rule));
         traces.map(move |(number, rule)| (number, rule, spheres(number as u32).collect()))
     }
 
@@ -198,7 +191,10 @@ impl<'a> Shown<'a> {
         DrawnSpheres {
             sticks: (0..self.drawn.len()).map(stick).collect(),
             are_drawn: (0..self.drawn.len()).map(|index| self.is_drawn(index)).collect(),
-            need_bonds: self.rules.iter().any(|rule| rule.style.has_sticks()),
+            need_bonds: self.rules.iter().enumerate().any(|(number, rule)| {
+                // Lines along a curve need none.
+                rule.style.has_sticks() && self.drawn.contains(&Drawn::By(number as u32))
+            }),
         }
     }
 }

@@ -6,6 +6,7 @@ use glam::DVec3;
 
 use super::Shown;
 use crate::added::{AddError, AddedShapes, bonded_pairs};
+use crate::kind::is_curve;
 use crate::load::{ColumnValues, Dataset};
 use crate::select::Selection;
 use pinhole::image::color::LinearRgb;
@@ -51,6 +52,7 @@ impl Shown<'_> {
         // The selection and the bonds are the same for all rules.
         let (mut is_guide, mut known) = (None, None);
         for (number, rule, spheres) in self.traces() {
+            let is_empty = spheres.is_empty();
             let is_guide = is_guide.get_or_insert_with(|| guides(data));
             let (guides, bonds): (_, Option<&HashSet<[u32; 2]>>) = match named(data, is_guide, &spheres) {
                 Some(named) => (named, None),
@@ -75,7 +77,7 @@ impl Shown<'_> {
                 let points: Vec<[f64; 4]> = run.iter().map(point).collect();
                 added.push_tube(&Tube::through(&points), &points, |at| look(number, run[at].sphere))?;
             }
-            if !has_tube {
+            if !has_tube && !is_empty {
                 added.note(
                     "`show`: no chain was found for a trace, which goes through atoms CA, P and BB, or along bonds"
                         .to_owned(),
@@ -108,6 +110,7 @@ fn named(data: &Dataset, is_guide: &Option<Vec<bool>>, spheres: &[usize]) -> Opt
 /// All of these spheres, without names.
 fn unnamed(data: &Dataset, spheres: Vec<usize>) -> Vec<Guide> {
     let spacing = data.spacing();
-    let (radius, reach) = (OTHERS.0 * spacing, OTHERS.1 * spacing);
+    let reach = if is_curve(data) { f64::INFINITY } else { OTHERS.1 * spacing };
+    let radius = OTHERS.0 * spacing;
     spheres.into_iter().map(|sphere| Guide { sphere, radius, reach }).collect()
 }

@@ -159,7 +159,8 @@ impl ColorBy {
         for label in &labels.indices {
             counts.get_mut(*label as usize).into_iter().for_each(|count| *count += 1);
         }
-        let is_used = |label: &usize| counts[*label] > 0 && !labels.names[*label].trim().is_empty();
+        // Texts that were in the file before a selection keep their colours.
+        let is_used = |label: &usize| !labels.names[*label].trim().is_empty();
         let mut used: Vec<usize> = (0..labels.names.len()).filter(is_used).collect();
         let order = order(used.iter().map(|label| labels.names[*label].as_str()));
         used.sort_by(|a, b| order(&labels.names[*a], &labels.names[*b]));
@@ -239,7 +240,7 @@ impl ColorBy {
             Some(given) => given_categories(given, &categories, &mut indices, &mut others),
             None => categories,
         };
-        if categories.is_empty() {
+        if self.categories.is_none() && categories.iter().all(|(_, count)| *count == 0) {
             return Err(no_value(column, "value"));
         }
         let map = self.map.unwrap_or(MapName::OKABE_ITO).reversed_if(self.is_reversed);
@@ -254,10 +255,11 @@ impl ColorBy {
         };
         if map.is_palette() && count > colors.len() {
             notes.push(format!(
-                "`{column}` has {count} different values and the palette {} only {} colors, so colors repeat; a color \
-                 map such as batlow gives each its own",
+                "`{column}` has {count} different values and the palette {} only {} colors, so colors repeat; {}a \
+                 color map such as batlow gives each its own",
                 map.name(),
-                colors.len()
+                colors.len(),
+                if column == "name" { "`species` colors by element, and " } else { "" }
             ));
         }
         let mut missing = 0;
@@ -279,8 +281,11 @@ impl ColorBy {
             .map(|(index, (name, count))| Category { name, color: color_of(index), count })
             .collect();
         let colors = categories.iter().map(|category| category.color).chain([self.missing]);
+        let palette = colors.map(LinearRgb::from_srgb8).collect();
+        let is_seen = |category: &Category| category.count > 0 || self.categories.is_some();
+        let categories = categories.into_iter().filter(is_seen).collect();
         Ok(Coloring {
-            palette: colors.map(LinearRgb::from_srgb8).collect(),
+            palette,
             indices,
             key: ColorKey {
                 title: column.to_owned(),

@@ -46,10 +46,17 @@ pub enum ColorByError {
     Column(#[from] ColumnError),
     /// The range is wrong.
     #[error("the range of the colors: {0}")]
-    Scale(#[from] ScaleError),
+    Scale(ScaleError),
     /// The values, the range or the factor do not suit the request.
     #[error("{0}")]
     Values(String),
+}
+
+impl From<ScaleError> for ColorByError {
+    /// Its message is a part of this one, so it is no source.
+    fn from(error: ScaleError) -> Self {
+        Self::Scale(error)
+    }
 }
 
 /// The choices that turn a column into colours.

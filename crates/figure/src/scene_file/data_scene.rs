@@ -8,10 +8,10 @@ use super::span::DEFAULT_COLOR;
 use crate::color_by::{ColorBy, ColorKey};
 use pinhole::image::color::LinearRgb;
 use pinhole::scene::{Colors, Scene};
-use pinhole_data::added::ArrowKey;
+use pinhole_data::added::{Additions, ArrowKey};
 use pinhole_data::load::{Column, ColumnValues, Dataset, Labels};
 use pinhole_data::select::KeptSpheres;
-use pinhole_data::show::ShowRule;
+use pinhole_data::show::{ShowRule, ShowStyle};
 
 /// The scene of data, with what else the keys of the scene file say about them.
 #[derive(Clone, Debug)]
@@ -34,11 +34,20 @@ pub struct DataScene {
     pub bonds: Option<usize>,
 }
 
+/// A part of the shapes of data.
+#[derive(Clone, Copy, PartialEq, Eq)]
+enum Part {
+    All,
+    Ghosts,
+    Others,
+}
+
 impl Data {
     /// Colours the spheres by kind, if neither a key nor the data gives colours: by `kinds`, or else as
     /// [`ColorBy::of_kinds`] does. Returns the choice.
     pub fn color_by_kinds(&mut self, loaded: &Dataset, kinds: Option<ColorBy>) -> Option<ColorBy> {
-        if self.color.is_some() || self.mapping.color.is_some() {
+        let has_kinds = self.elements.iter().any(|element| element.color.is_some());
+        if self.color.is_some() || self.mapping.color.is_some() || has_kinds {
             return None;
         }
         let kinds = kinds.or_else(|| ColorBy::of_kinds(loaded));
@@ -55,7 +64,16 @@ impl Data {
     /// # Errors
     /// If a key names a column that the data does not have, or whose values cannot be used; if it selects nothing; if
     /// the data lacks what bonds, a box or arrows need; or if a sphere is out of range.
-    pub fn scene(&self, mut loaded: Dataset, own: &OwnShapes) -> Result<DataScene, DataError> {
+    pub fn scene(&self, loaded: Dataset, own: &OwnShapes) -> Result<DataScene, DataError> {
+        if !self.shows.iter().any(|show| show.rule.style == ShowStyle::Ghost) {
+            return self.part(loaded, own, Part::All);
+        }
+        let ghosts = self.part(loaded.clone(), &OwnShapes::default(), Part::Ghosts)?.scene;
+        let made = self.part(loaded, own, Part::Others)?;
+        Ok(DataScene { scene: made.scene.with_ghosts(ghosts), ..made })
+    }
+
+    fn part(&self, mut loaded: Dataset, own: &OwnShapes, part: Part) -> Result<DataScene, DataError> {
         if let Some(replicate) = self.replicate {
             replicate.apply(&mut loaded).map_err(DataError::Replicate)?;
         }
@@ -69,6 +87,21 @@ impl Data {
         let left_out = self.leave_out(&mut loaded)?;
         let rules: Vec<ShowRule> = self.shows.iter().map(|show| show.rule.clone()).collect();
         let mut shown = shown(&rules, &loaded)?;
+        let kept = match &shown {
+            Some(shown) => Some(shown.kept(kept)),
+            None => kept,
+        };
+        let are_framed: Vec<bool> = match &shown {
+            // Ghosts are framed, too.
+            Some(shown) if part == Part::Others => {
+                (0..loaded.spheres.len()).map(|index| shown.is_seen(index)).collect()
+            }
+            _ => Vec::new(),
+        };
+        shown = match part {
+            Part::All => shown,
+            _ => shown.map(|shown| shown.only(part == Part::Ghosts)),
+        };
         let focus = self.focus.as_ref().map(|focus| focus.chosen(&loaded)).transpose().map_err(DataError::Focus)?;
         let mut notes = std::mem::take(&mut loaded.notes);
         notes.extend(kept.iter().flat_map(|kept| kept.notes.clone()).chain(left_out));
@@ -110,7 +143,11 @@ impl Data {
         let looks = looks.transpose()?;
         let of_rules = looks.as_ref().map(|looks| looks.appearance(count));
         let drawn = shown.as_ref().map(|shown| shown.drawn_spheres(&loaded, self.additions.bonds.is_some()));
-        let mut added = self.additions.add(&loaded, of_rules.as_ref().unwrap_or(&appearance), drawn.as_ref())?;
+        let additions = match part {
+            Part::Ghosts => &Additions { cell: None, arrows: None, ..self.additions.clone() },
+            _ => &self.additions,
+        };
+        let mut added = additions.add(&loaded, of_rules.as_ref().unwrap_or(&appearance), drawn.as_ref())?;
         if let (Some(shown), Some(looks)) = (&shown, &looks) {
             shown.add_tubes(&loaded, &mut added, |rule, index| looks.look(Some(rule), index))?;
             notes.extend(looks.notes());
@@ -118,7 +155,8 @@ impl Data {
         }
         notes.extend_from_slice(added.notes());
         appearance = of_rules.unwrap_or(appearance);
-        let in_focus = focus.iter().flat_map(|(is_in, _)| (0..count).filter(|index| is_in[*index]));
+        let is_in = focus.as_ref().map_or(&are_framed, |(is_in, _)| is_in);
+        let in_focus = (0..count).filter(|index| is_in.get(*index) == Some(&true));
         let in_focus: Vec<[f64; 4]> = in_focus.map(|index| loaded.spheres.at(index)).collect();
         let are_drawn = drawn.as_ref().map(|drawn| &*drawn.are_drawn);
         if !added.is_empty() || are_drawn.is_some() {
@@ -132,10 +170,6 @@ impl Data {
             .with_added(added.sphere_count())
             .with_focus(&in_focus);
         let bonds = (self.additions.bonds.is_some() || added.bonds() > 0).then_some(added.bonds());
-        let kept = match &shown {
-            Some(shown) => Some(shown.kept(kept)),
-            None => kept,
-        };
         let arrow_key = added.arrow_key().cloned();
         Ok(DataScene { scene, color_key, arrow_key, columns: loaded.columns, notes, kept, bonds })
     }

@@ -27,6 +27,7 @@ pub use data_error::DataError;
 pub use data_scene::DataScene;
 pub(crate) use document::Document;
 pub use document::KEYS_OF_DATA;
+pub(crate) use lighting::DepthCuePlan;
 pub use lighting::IntegratorKind;
 pub use settled::Settled;
 pub use shapes::OwnShapes;

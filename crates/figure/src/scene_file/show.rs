@@ -122,14 +122,20 @@ pub(super) fn shows(
         let base = SurfaceProperties::default();
         let surface = over(materials, base, table.material.as_deref(), table.opacity).map_err(refused)?;
         let color = |text: &Option<String>| text.as_deref().map(ShowColor::new);
-        let is_ribbon = ["cartoon", "ribbon"].iter().any(|name| name.eq_ignore_ascii_case(&table.style));
+        let note = match table.style.to_lowercase().as_str() {
+            "cartoon" | "newcartoon" | "ribbon" | "newribbons" => {
+                Some("there are no ribbons; a trace is a tube through the same atoms")
+            }
+            "putty" => Some("the tube has one width; color = \"b_factor\" shows the B factors"),
+            _ => None,
+        };
         Ok(Show {
             rule,
             color: color(&table.color),
             carbon: color(&table.carbon),
             surface: table.material.is_some().then_some(surface),
             opacity: table.opacity.map(|_| surface.opacity),
-            note: is_ribbon.then_some("there are no ribbons; a trace is a tube through the same atoms"),
+            note,
         })
     };
     tables.iter().enumerate().map(show).collect()
@@ -140,7 +146,6 @@ pub(super) struct RuleLooks<'a> {
     rules: Vec<RuleLook<'a>>,
     shown: &'a Shown<'a>,
     base: &'a Appearance,
-    ghost_opacity: f32,
 }
 
 /// The look of a rule.
@@ -207,7 +212,7 @@ impl<'a> RuleLooks<'a> {
             Ok(RuleLook { show, color, carbon: carbon.transpose()? })
         };
         let rules = shows.iter().map(rule).collect::<Result<_, DataError>>()?;
-        Ok(Self { rules, shown, base, ghost_opacity: shown.ghost_opacity(data) })
+        Ok(Self { rules, shown, base })
     }
 
     /// The meaning of the colours, if one rule has those of a column.
@@ -247,9 +252,6 @@ impl<'a> RuleLooks<'a> {
         let color = color.unwrap_or(color_before);
         let mut surface = rule.and_then(|rule| rule.show.surface).unwrap_or(before);
         surface.opacity = rule.and_then(|rule| rule.show.opacity).unwrap_or(surface.opacity);
-        if self.shown.is_ghost(index) {
-            surface.opacity *= self.ghost_opacity;
-        }
         (color, surface)
     }
 

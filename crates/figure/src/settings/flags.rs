@@ -272,8 +272,8 @@ flags! {
         "--focus" "focus", Text, "EXPRESSION",
             "Frame only the spheres for which an expression is true, whatever else is drawn";
         "--box" "box", Words(words::cell), "WIDTH" (""),
-            "Draw the edges of the file's periodic cell, with this width; --no-box draws none [without a width: 1/300 of the \
-             cell's diagonal]";
+            "Draw the edges of the file's periodic cell, or of the box around all spheres if it has none, with this width; \
+             --no-box draws none [without a width: 1/300 of the diagonal]";
         "--bonds" "bonds", Words(words::bonds), "FACTOR" (""),
             "Draw balls and sticks: bonds between atoms that are closer than FACTOR times the sum of their covalent radii, \
              except between hydrogens; atoms become smaller unless their radii are given [without a factor: 1.2]";
@@ -351,7 +351,7 @@ flags! {
         "--ao" "studio.occlusion.samples", Whole, "RAYS" ("4"),
             "Ambient occlusion with this number of rays per sample, from 1 to 1024 (studio) [without a number: 4]";
         "--outline" "studio.outline.width", Number, "PIXELS",
-            "Outlines around shapes with this width in pixels, from 0.5 to 64 (studio)";
+            "Outlines around shapes with this width in pixels, from 0.5 to 64, or 0 for none (studio)";
         "--denoise" "sampling.denoise", Switch, "BOOL" ("true"),
             "Remove noise with a filter that is guided by shapes and colors [default: the scene's, or the style's]";
     }

@@ -8,7 +8,8 @@ use serde::de::{DeserializeOwned, Deserializer, Error, IntoDeserializer, Visitor
 use serde::forward_to_deserialize_any;
 
 use crate::scene_file::{
-    ArrowsTable, BondsTable, BoxTable, ConeTable, CylinderTable, Document, ShowTable, SphereTable, TubeTable,
+    ArrowsTable, BondsTable, BoxTable, ConeTable, CylinderTable, DepthCuePlan, Document, ShowTable, SphereTable,
+    TubeTable,
 };
 
 /// A name that no key and no kind has.
@@ -23,6 +24,7 @@ pub fn keys_of(table: &str) -> Vec<&'static str> {
         "bonds" => keys_in::<BondsTable>(""),
         "arrows" => keys_in::<ArrowsTable>(""),
         "show" => keys_in::<ShowTable>(""),
+        "studio.depth_cue" => keys_in::<DepthCuePlan>(""),
         "spheres" => keys_in::<SphereTable>(""),
         "cylinders" => keys_in::<CylinderTable>(""),
         "cones" => keys_in::<ConeTable>(""),

@@ -185,6 +185,9 @@ pub(super) fn show(text: &str) -> Result<String, String> {
             return Err(format!("{}; write SELECTION = STYLE, such as 'resname HEM = sticks'", unknown_style(last)));
         }
     };
+    // The spheres stand before the style.
+    let pair =
+        |part| pair(part).map_err(|problem| format!("{problem}; for some spheres, write '{} = {style}'", part.trim()));
     let pairs = rest.split(',').skip(1).map(pair).collect::<Result<Vec<_>, _>>()?;
     let select = selection.filter(|text| !text.is_empty()).map(|text| format!("select = {}", quoted(text)));
     let keys: Vec<String> = select.into_iter().chain([format!("as = {}", quoted(&style))]).chain(pairs).collect();

@@ -75,9 +75,29 @@ fn the_last_rule_for_a_sphere_counts() {
     // The rest is what no other rule is about, whichever comes first.
     let rules = "[[show]]\nselect = \"rest\"\nas = \"ghost\"\n[[show]]\nselect = \"element C\"\nas = \"spacefill\"\n";
     let DataScene { scene, notes, .. } = made(read(WATER, "a.xyz"), rules);
-    assert_eq!((radii(&scene), notes), (vec![1500, 1200, 1200, 1770], vec![]));
-    let opacities: Vec<f32> = (0..4).map(|id| scene.surface(id).opacity).collect();
-    assert!(opacities[..3].iter().all(|opacity| *opacity < 0.5) && opacities[3] >= 1.0, "{opacities:?}");
+    assert_eq!((radii(&scene), notes), (vec![1770], vec![]));
+    assert_eq!(scene.ghosts().map(radii), Some(vec![1500, 1200, 1200]));
+}
+
+#[test]
+fn ghosts_are_a_scene_of_their_own() {
+    // Sticks of ghosts are ghosts, and sticks between both are in none.
+    let rules = "[[show]]\nas = \"balls\"\n[[show]]\nselect = \"index 1 2\"\nas = \"ghost\"\n";
+    let file = "4\n\nO 0 0 0\nC 1.2 0 0\nC 2.5 0 0\nO 0 0 9\n";
+    let DataScene { scene, kept, .. } = made(read(file, "a.xyz"), rules);
+    let ghosts = scene.ghosts().unwrap();
+    assert_eq!((radii(&scene), sticks(&scene).len()), (vec![375, 375], 0));
+    assert_eq!((radii(ghosts), sticks(ghosts).is_empty()), (vec![443, 443], false));
+    assert_eq!(kept.map(|kept| (kept.kept, kept.of)), Some((4, 4)));
+    // The camera frames them, and those of the scene file and the cell are no ghosts.
+    let rules = "box = true\n[[show]]\nselect = \"element O\"\nas = \"ghost\"\n";
+    let cell = "2\nLattice=\"9 0 0 0 9 0 0 0 9\" Properties=species:S:1:pos:R:3\nO 0 0 0\nC 4 4 4\n";
+    let scene = made(read(cell, "a.extxyz"), rules).scene;
+    let of_ghosts = scene.ghosts().unwrap();
+    assert_eq!((radii(of_ghosts), of_ghosts.cones().len()), (vec![1500], 0));
+    assert!(scene.cones().len() >= 12);
+    assert!(scene.subject().bounds().min().min_element() < -1.0, "{:?}", scene.subject().bounds());
+    assert!(made(read(WATER, "a.xyz"), "").scene.ghosts().is_none());
 }
 
 #[test]

@@ -209,11 +209,14 @@ impl<'a> First<'a> {
         let row = &text[..start];
         let rows_with_first = &text[row.len() - line_length(row)..];
         let (names, rows, lines_before) = if is_header {
-            if !given.is_empty() {
-                let message = "the table has a header here; remove the names of columns that are given";
+            // Names that are given take the place of those of the header.
+            if !given.is_empty() && given.len() != values.len() {
+                let (names, columns) = (given.len(), values.len());
+                let message =
+                    format!("the table has a header of {columns} names here, but {names} are given; leave them out");
                 return Err(LoadError::line(line, message));
             }
-            (values, after, line)
+            (if given.is_empty() { values } else { given.to_vec() }, after, line)
         } else if given.is_empty() {
             let comment = comment.map(|comment| comment.text.trim_ascii_start());
             let comment = comment.and_then(|text| text.strip_prefix(b"#"));

@@ -9,7 +9,7 @@ pub(super) use integrator::IntegratorChoice;
 pub use integrator::IntegratorKind;
 pub(super) use lights::{DirectionalTable, LightTable};
 pub(super) use sky::{GroundTable, SkyTable};
-pub(super) use studio::DepthCuePlan;
+pub(crate) use studio::DepthCuePlan;
 
 use super::document::Document;
 use super::span::{KeyError, SceneFileError};

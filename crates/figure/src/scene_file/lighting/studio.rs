@@ -27,11 +27,15 @@ pub(crate) struct DepthCuePlan {
     far: Option<f64>,
     /// The colour to which others fade; by default the background.
     color: Option<LinearRgb>,
+    /// The part of `color` in what is at `far`, more than 0 and at most 1; by default 1.
+    strength: Option<f64>,
 }
 
 impl DepthCuePlan {
     fn check(&self) -> Result<(), RangeError> {
         let within = RangeError::unless_within;
+        let strength = self.strength.unwrap_or(1.0);
+        within("strength", strength, [0.01, 1.0], "from 0.01 to 1")?;
         let near = self.near.unwrap_or(0.0);
         within("near", near, [0.0, MAX_LENGTH], "0 or more, and at most 2^56")?;
         let Some(far) = self.far else { return Ok(()) };
@@ -44,10 +48,13 @@ impl DepthCuePlan {
 
 impl StudioPlan {
     pub(super) fn new(
-        studio: Studio,
+        mut studio: Studio,
         depth_cue: Option<DepthCuePlan>,
         layers: &Joined<'_>,
     ) -> Result<Self, SceneFileError> {
+        // A width of 0 takes away the lines of a style.
+        studio.outline =
+            studio.outline.filter(|outline| outline.width.is_nan() || outline.width.abs() >= f32::MIN_POSITIVE);
         let bare = Studio { occlusion: None, outline: None, ..studio.clone() };
         for (table, checked) in [
             ("studio", bare.check()),
@@ -76,6 +83,7 @@ impl StudioPlan {
             let [near, far] = reach(scene, camera);
             let near = plan.near.unwrap_or(plan.far.map_or(near, |far| near.min(far / 2.0)));
             let far = plan.far.unwrap_or(if far > near { far } else { near + 1.0 });
+            let far = (near + (far - near) / plan.strength.unwrap_or(1.0)).min(MAX_LENGTH);
             let color = plan.color.unwrap_or(background);
             studio.depth_cue = Some(DepthCue { near, far, color });
             studio.check().map_err(|error| span.error(error))?;
