@@ -17,6 +17,7 @@ pub(crate) fn refuse(input: &Input, what: &str) -> Result<(), Failure> {
 }
 
 /// A note about ghosts that are not drawn or judged.
+#[cfg(feature = "gpu")]
 pub(crate) fn note(input: &Input, what: &str) -> Option<String> {
     input.scene.ghosts().map(|_| format!("note: ghosts are {what}, as they are drawn over a finished picture"))
 }

@@ -22,7 +22,7 @@ const SAID: &[(&[&str], &str)] = &[
     (&["light", "light-direction", "lights"], "--style chooses the light; [[lights]] in a scene file say where it is"),
     (&["ambient-occlusion", "ssao"], "--style default has it; --ao N takes N rays for it"),
     (
-        &["fog", "depth-cue", "depthcue"],
+        &["fog", "depth-cue", "depthcue", "depthcueing"],
         "colors fade with distance with --set studio.depth_cue={} alone; leave it out for none",
     ),
     (
@@ -181,7 +181,6 @@ const SAID: &[(&[&str], &str)] = &[
         &["layers"],
         "--slice z=LOW:HIGH keeps a layer, --replicate repeats the cell, and --layer NAME=FILE writes data of pixels",
     ),
-    (&["depthcueing"], "colors fade with distance with --set studio.depth_cue={} alone; leave it out for none"),
     (&["grid", "montage", "layout"], "a picture shows one file; `magick montage a.png b.png ab.png` joins pictures"),
     (&["polyhedra", "isosurface", "mesh"], "only spheres, cylinders and cones are drawn; --show balls joins neighbors"),
     (
