@@ -80,7 +80,12 @@ impl Given {
             let (first, last) = (flag.key.split('.').next(), flag.key.strip_prefix("camera.*."));
             first == Some(key) || last == Some(key)
         };
-        self.0.iter().any(|(flag, _)| is(flag))
+        let is_set = |value: &str| {
+            let path = value.split('=').next().unwrap_or_default().trim();
+            let last = path.strip_prefix("camera.").and_then(|path| path.rsplit('.').next());
+            path.split('.').next() == Some(key) || last == Some(key)
+        };
+        self.0.iter().any(|(flag, value)| if flag.name() == "set" { is_set(value) } else { is(flag) })
     }
 
     /// The settings that the flags give.

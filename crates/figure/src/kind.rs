@@ -126,6 +126,11 @@ impl KindSettings {
         if traits.has_cell && traits.kind == Kind::Crystal && !is_given("replicate") {
             self.add("replicate = \"faces\"");
         }
+        // Tables of elements may give colours alone, and other radii to some.
+        let has_sizes = STRUCTURE.iter().any(|key| *key != "elements" && is_given(key));
+        if traits.kind == Kind::Particles && traits.beads_lack[1] && !has_sizes {
+            self.add(&format!("radius = {}", written(0.5 * traits.spacing)));
+        }
         if STRUCTURE.iter().any(|key| is_given(key)) {
             let has_sticks = matches!(traits.kind, Kind::Slab | Kind::Crystal | Kind::Molecules | Kind::Polymer);
             // Other sizes and colours do not take away the sticks.
@@ -165,9 +170,6 @@ impl KindSettings {
         }
         if traits.kind == Kind::Biomolecule {
             self.biomolecule(traits, is_given);
-        }
-        if traits.kind == Kind::Particles && traits.beads_lack[1] {
-            self.add(&format!("radius = {}", written(0.5 * traits.spacing)));
         }
     }
 

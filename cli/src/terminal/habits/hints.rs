@@ -36,7 +36,7 @@ const SAID: &[(&[&str], &str)] = &[
          and with --set 'elements_by=[\"type\"]' for a type",
     ),
     (
-        &["colors", "colours", "type-colors"],
+        &["colors", "colours", "type-color", "type-colors", "type-colours", "color-type"],
         "--color-by COLUMN colors by data, --color CSS all alike; --set 'elements.O.color=\"red\"' is for a kind",
     ),
     (
@@ -106,10 +106,6 @@ const SAID: &[(&[&str], &str)] = &[
     ),
     (&["movie"], "--turntable 36 -o movie.mp4 turns the data once, and -o movie.mp4 alone shows its frames"),
     (
-        &["type-color", "type-colours", "color-type"],
-        "--show 'type == 1 = spacefill, color=red' is for a type, and so on; --color-by type colors all",
-    ),
-    (
         &["timestep-label", "time-label", "frame-label"],
         "texts that change from frame to frame are not drawn; --label TEXT writes the same in all",
     ),
@@ -161,6 +157,11 @@ const SAID: &[(&[&str], &str)] = &[
         &["plot", "scatter", "scatter3d", "plot-type"],
         "points are drawn as spheres, and a curve as a tube; leave it out",
     ),
+    (
+        &["trajectory-lines", "trails", "paths"],
+        "paths over frames are not drawn; a table with the places of one sphere is drawn as a curve",
+    ),
+    (&["s"], "--radius R is in units of the data, and --radius-scale F multiplies radii"),
     (&["xlim", "ylim", "zlim"], "--slice x=0:10 keeps what is between, and y and z likewise"),
     (&["slice-width", "slab-width", "slice-thickness"], "--slice z=3:7 has both ends"),
     (&["invert", "invert-selection"], "--select 'not (EXPRESSION)' keeps the others"),

@@ -114,7 +114,7 @@ fn words_without_a_meaning_are_refused() {
         ("--ptm", "--ptm: structures are not analyzed; add a column to the file, which --color-by draws"),
         (
             "--color A=red,B=blue",
-            "--color A=red,B=blue: this is one color for all; for a part: --show 'chain A = spacefill, color=VALUE', and for \
+            "--color A=red,B=blue: this is one color for all; for a part: --show 'SELECTION = spacefill, color=VALUE', and for \
              each kind: --set 'elements.NAME.color=VALUE'",
         ),
         ("--center -o b.png", "--center: pictures are centered on what they show; leave it out"),

@@ -1,6 +1,7 @@
 //! Values that other programs give to flags of the same name.
 
 use pinhole_data::css;
+use pinhole_data::select::Selection;
 use pinhole_data::show::ShowStyle;
 use strsim::normalized_levenshtein;
 
@@ -34,7 +35,7 @@ const OF_ATOMS: [&str; 11] =
 pub(super) fn meant<'a>(name: &'a str, text: &str, has: impl Fn(&str) -> bool) -> Result<(&'a str, String), Failure> {
     if ["color", "radius"].contains(&name) && text.contains('=') {
         return Err(Failure::usage(format!(
-            "--{name} {text}: this is one {name} for all; for a part: --show 'chain A = spacefill, {name}=VALUE', and for each \
+            "--{name} {text}: this is one {name} for all; for a part: --show 'SELECTION = spacefill, {name}=VALUE', and for each \
              kind: --set 'elements.NAME.{name}=VALUE'"
         )));
     }
@@ -62,6 +63,16 @@ pub(super) fn meant<'a>(name: &'a str, text: &str, has: impl Fn(&str) -> bool) -
         && let Some(words) = super::hints::of_setting(text.split('=').next().unwrap_or_default().trim())
     {
         return Err(Failure::usage(format!("--set {text}: {words}")));
+    }
+    if name == "distance" && text.parse::<f64>().is_err() {
+        return Err(Failure::usage(format!(
+            "--distance {text}: this is the distance of the view plane; distances between atoms are not drawn"
+        )));
+    }
+    if name == "style" && text.contains([',', ';']) && drawn_as(first).is_some() {
+        return Err(Failure::usage(format!(
+            "--style {text}: a style for each part: --show 'protein = trace' --show 'resname HEM = sticks'"
+        )));
     }
     let is_number = text.trim_end_matches('%').parse::<f64>().is_ok();
     // A name that is not a color is a column, unless it is nearly one.
@@ -112,5 +123,6 @@ fn drawn_as(text: &str) -> Option<String> {
 fn is_of_atoms(text: &str) -> bool {
     let is_format = ["{step}", "{frame}", "{time}", "{timestep}"].iter().any(|part| text.contains(part))
         || text.starts_with('%') && text.split('%').skip(1).all(|part| part.starts_with(char::is_alphabetic));
-    is_format || OF_ATOMS.contains(&text)
+    let is_selection = text.contains(" and ") && text.parse::<Selection>().is_ok();
+    is_format || is_selection || OF_ATOMS.contains(&text)
 }
