@@ -139,7 +139,8 @@ fn plain_symbols(words: &[String]) -> (Vec<String>, Option<String>) {
     };
     let symbols: Vec<String> = words.iter().map(plain).collect();
     let changed = words.iter().zip(&symbols).filter(|(word, symbol)| word != symbol);
-    let changed: Vec<String> = changed.map(|(word, symbol)| format!("{} is {symbol}", shortened(word))).collect();
+    let changed: Vec<String> =
+        changed.map(|(word, symbol)| format!("{} is {}", shortened(word), shortened(symbol))).collect();
     let is_changed = !changed.is_empty();
     let note = || format!("names of potentials are taken as chemical elements: {}", listed(changed.into_iter(), 16));
     (symbols, is_changed.then(note))
@@ -181,4 +182,16 @@ fn kinds_of(symbols: Vec<String>, counts: &[String]) -> Result<(Vec<(String, usi
         return Err("there must be at least one atom".to_owned());
     }
     Ok((kinds, atoms))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn notes_have_no_control_characters() {
+        let (symbols, note) = plain_symbols(&["H\u{11}~/5b3".to_owned(), "Fe_pv".to_owned()]);
+        assert_eq!(symbols, ["H\u{11}~", "Fe"]);
+        assert!(!note.unwrap().contains('\u{11}'));
+    }
 }
