@@ -61,7 +61,13 @@ impl Chosen {
         });
         let text = settings.text();
         let name = (!text.is_empty()).then(|| traits.kind.name());
-        let notes = settings.notes.iter().map(|note| format!("{}; {}", note.what, note.remedies[0])).collect();
+        let mut notes: Vec<String> =
+            settings.notes.iter().map(|note| format!("{}; {}", note.what, note.remedies[0])).collect();
+        let has_rules = ["show", "hide", "ghost"].iter().any(|flag| given.get(flag).is_some());
+        let focus = given.get("focus").filter(|focus| *focus != "all" && !has_rules);
+        if let (Kind::Biomolecule, Some(focus)) = (traits.kind, focus) {
+            notes.push(format!("others may hide what is in focus; --ghost 'not ({focus})' draws them faintly"));
+        }
         let (camera, up) = settings.view.map(|view| (view.camera, view.up)).unzip();
         Self { layer: Layer { flag: KIND, text }, style: settings.style, camera, up, colors: None, name, notes }
     }

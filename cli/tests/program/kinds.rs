@@ -53,6 +53,28 @@ fn a_saved_scene_has_what_follows_from_the_kind() {
 }
 
 #[test]
+fn ghosts_are_drawn_over_the_picture_of_the_others() {
+    let folder = folder();
+    let picture = |flags: &str| {
+        let run = folder.run(&format!("protein.pdb -o a.png {SMALL} --layer id=a.npy {flags}")).succeeded();
+        (run.stderr, folder.read("a.png"), folder.read("a.npy"))
+    };
+    let [(_, hidden, ids), (_, faint, same), (_, solid, others)] =
+        ["--hide 'chain==B' --focus all", "--ghost 'chain==B' --focus all", "--focus all"]
+            .map(|flags| picture(&flags.replace('\'', "")));
+    assert!(hidden != faint && faint != solid && others != same);
+    // Ghosts are in no layer of data.
+    assert!(ids == same);
+    let (said, ..) = picture("--focus chain==A");
+    assert!(said.contains("others may hide what is in focus; --ghost 'not (chain==A)'"), "{said}");
+    let (said, ..) = picture("--focus chain==A --ghost chain==B");
+    assert!(!said.contains("others may hide"), "{said}");
+    folder.run(&format!("protein.pdb -o b.png {SMALL} --ghost chain==B --save-scene b.toml")).succeeded();
+    folder.run("b.toml -o c.png --backend cpu -q").succeeded();
+    assert!(folder.read("b.png") == folder.read("c.png"));
+}
+
+#[test]
 fn flags_take_the_place_of_what_follows_from_the_kind() {
     let folder = folder();
     let scene = |arguments: &str| {
@@ -70,6 +92,8 @@ fn flags_take_the_place_of_what_follows_from_the_kind() {
     assert!(!scene("protein.pdb --show trace").contains("spacefill"));
     assert!(!scene("protein.pdb --select residue==HOH").contains("hidden"));
     assert!(!scene("protein.pdb --color red").contains("color_by"));
+    let beads = scene("beads.xyz --set elements.A.color=red");
+    assert!(!beads.contains("color_by") && beads.contains("[elements.A]") && beads.contains("radius ="), "{beads}");
     folder.refuses("water.xyz --kind gas", 2, "invalid value 'gas'");
     std::fs::write(folder.path("kind.toml"), "data = \"water.xyz\"\nkind = \"slab\"\n").unwrap();
     folder.refuses("kind.toml -o a.png", 1, "`kind` applies to data files without a scene");
