@@ -59,6 +59,24 @@ impl Series {
             Ok(())
         })
     }
+
+    /// Calls `work` with the number of each picture and an input that has its camera and settings, until it returns `false`
+    /// or an error. The data stays that of the first picture, so that no other is read.
+    pub(crate) fn for_each_look(
+        self,
+        mut work: impl FnMut(usize, &Input) -> Result<bool, Failure>,
+    ) -> Result<(), Failure> {
+        let Self { source, mut input, camera, numbers, left, .. } = self;
+        for (place, number) in left.into_iter().enumerate() {
+            if let Some(camera) = camera.as_deref().filter(|_| place > 0) {
+                see(&mut input, camera.view(&source, number, numbers.index_of(number))?);
+            }
+            if !work(number, &input)? {
+                break;
+            }
+        }
+        Ok(())
+    }
 }
 
 /// Reads the first frame to render, and makes the camera and the colours of all frames.
@@ -167,12 +185,17 @@ fn read(
     }
 }
 
+/// Gives an input another camera, with the settings for it.
+fn see(input: &mut Input, look: Look) {
+    let is_transparent = input.settings.is_transparent;
+    (input.camera, input.eyes, input.settings) = (look.camera, look.eyes, look.settings);
+    input.settings.is_transparent = is_transparent;
+}
+
 /// Turns the input of one picture into that of the next.
 fn apply(input: &mut Input, change: Change, notes: &mut Notes) -> Result<(), Failure> {
     if let Some(look) = change.look {
-        let is_transparent = input.settings.is_transparent;
-        (input.camera, input.eyes, input.settings) = (look.camera, look.eyes, look.settings);
-        input.settings.is_transparent = is_transparent;
+        see(input, *look);
     }
     if let Some(mut contents) = change.contents {
         contents.details.notes.drain(..).for_each(|note| notes.tell(note));

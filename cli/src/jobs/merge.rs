@@ -114,7 +114,7 @@ fn write(folder: &Folder, recipe: Recipe, devices: &Devices) -> Result<usize, Fa
     let mut places = 0..;
     writing.write(&wanted, all.len(), adapter, |written| {
         // Lines depend on the camera of each picture.
-        series.for_each(|number, input| {
+        series.for_each_look(|number, input| {
             written.begin();
             let joined = picture(folder, places.next().unwrap_or_default())?;
             let image = finish_joined(joined, &input.settings, writing.layers, renderer(&opened, input, true))?;

@@ -109,7 +109,6 @@ const SAID: &[(&[&str], &str)] = &[
         &["timestep-label", "time-label", "frame-label"],
         "texts that change from frame to frame are not drawn; --label TEXT writes the same in all",
     ),
-    (&["subplots", "side-by-side"], "a picture shows one file; `magick montage a.png b.png ab.png` joins pictures"),
     (
         &["ray-opaque-background", "opaque-background", "ray-opaque"],
         "--transparent leaves out the background; pictures have one otherwise",
@@ -182,7 +181,10 @@ const SAID: &[(&[&str], &str)] = &[
         &["layers"],
         "--slice z=LOW:HIGH keeps a layer, --replicate repeats the cell, and --layer NAME=FILE writes data of pixels",
     ),
-    (&["grid", "montage", "layout"], "a picture shows one file; `magick montage a.png b.png ab.png` joins pictures"),
+    (
+        &["grid", "layout", "montage", "side-by-side", "subplots"],
+        "a picture shows one file; `magick montage a.png b.png ab.png` joins pictures",
+    ),
     (&["polyhedra", "isosurface", "mesh"], "only spheres, cylinders and cones are drawn; --show balls joins neighbors"),
     (
         &["labels", "label-atoms", "atom-labels"],
@@ -192,7 +194,7 @@ const SAID: &[(&[&str], &str)] = &[
     (&["color-scheme", "coloring"], "--color-by COLUMN colors by a column, such as chain or element"),
 ];
 
-/// What to type in the place of a setting of `PyMOL`.
+/// The words about a setting of `PyMOL`, which say what to type.
 pub(super) fn of_setting(key: &str) -> Option<&'static str> {
     Some(match key {
         "stick_radius" => {

@@ -27,7 +27,7 @@ const COLORS: [&str; 13] = [
 /// Names of styles that there are not, of which an error says what is closest.
 const NO_STYLES: [&str; 7] = ["cpk", "surface", "surf", "quicksurf", "mesh", "isosurface", "msms"];
 
-/// What other programs write at each atom.
+/// Columns that other programs write at each atom.
 const OF_ATOMS: [&str; 11] =
     ["atom", "chain", "element", "index", "name", "resi", "resid", "resn", "resname", "serial", "symbol"];
 

@@ -139,7 +139,7 @@ impl<'a> Shown<'a> {
         self.is_drawn(index) || self.traces[index].is_some()
     }
 
-    /// The same without ghosts, or only the ghosts.
+    /// Leaves out ghosts, or all but the ghosts.
     #[must_use]
     pub fn only(mut self, ghosts: bool) -> Self {
         for index in (0..self.drawn.len()).filter(|index| self.ghosts[*index] != ghosts) {

@@ -17,6 +17,7 @@ mod camera_path;
 mod color_by;
 mod cones;
 mod environment;
+mod lines;
 mod pictures;
 mod scene_file;
 mod scene_file_light;
